@@ -57,28 +57,62 @@ bool ParseInt(std::string_view text, int* value) {
   return true;
 }
 
-std::string NearestName(std::string_view name, const std::vector<std::string>& names) {
-  std::string best;
-  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
-  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  for (const std::string& candidate : names) {
-    std::vector<std::size_t> row(candidate.size() + 1);
-    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-    for (std::size_t i = 0; i < name.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i + 1;
-      for (std::size_t j = 0; j < candidate.size(); ++j) {
-        const std::size_t substitute = diagonal + (lower(name[i]) != lower(candidate[j]) ? 1 : 0);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitute});
-      }
-    }
-    if (row.back() < best_distance) {
-      best_distance = row.back();
-      best = candidate;
+namespace {
+
+char Lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substitute = diagonal + (Lower(a[i]) != Lower(b[j]) ? 1 : 0);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitute});
     }
   }
-  return best;
+  return row.back();
+}
+
+// Edits from one to the other; less than one where `name` is how the other begins, or what it is within its group.
+double DistanceTo(std::string_view name, std::string_view candidate) {
+  constexpr std::size_t kShortestBeginning = 3;
+  constexpr double kOfBeginning = 0.5;
+  constexpr double kOfGroup = 0.25;
+  const auto to = [&](std::string_view other) {
+    const bool begins = name.size() >= kShortestBeginning && other.size() > name.size() &&
+                        EditDistance(name, other.substr(0, name.size())) == 0;
+    return begins ? kOfBeginning : static_cast<double>(EditDistance(name, other));
+  };
+  const std::size_t dot = candidate.rfind('.');
+  const double whole = to(candidate);
+  return dot == std::string_view::npos ? whole : std::min(whole, to(candidate.substr(dot + 1)) + kOfGroup);
+}
+
+struct Nearest {
+  std::string name = {};
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+Nearest FindNearest(std::string_view name, const std::vector<std::string>& names) {
+  Nearest nearest;
+  for (const std::string& candidate : names)
+    if (const double distance = DistanceTo(name, candidate); distance < nearest.distance)
+      nearest = {candidate, distance};
+  return nearest;
+}
+
+}  // namespace
+
+std::string NearestName(std::string_view name, const std::vector<std::string>& names) {
+  return FindNearest(name, names).name;
+}
+
+std::string SimilarName(std::string_view name, const std::vector<std::string>& names) {
+  Nearest nearest = FindNearest(name, names);
+  return 2 * nearest.distance < static_cast<double>(name.size()) ? std::move(nearest.name) : std::string();
 }
 
 void OptionTable::BeginGroup(std::string name, std::string why) {

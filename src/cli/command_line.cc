@@ -228,11 +228,12 @@ std::optional<int> CommandLine::Parse(std::span<const std::string> args) {
   return UsageError(status.message());
 }
 
-std::string CommandLine::NearestFlag(std::string_view flag, const OptionTable& options) const {
+std::string CommandLine::Hint(std::string_view flag, const OptionTable& options) const {
   std::vector<std::string> names;
   for (const Argument& argument : arguments_) names.push_back(argument.name);
   for (const OptionField& field : options.fields()) names.push_back(field.name);
-  return "--" + NearestName(flag, names);
+  const std::string similar = SimilarName(flag, names);
+  return similar.empty() ? "; " + NameOf(manual_) + " --help-all lists them" : "; did you mean --" + similar + "?";
 }
 
 Status CommandLine::ApplyFlags(OptionTable& options) const {
@@ -248,8 +249,7 @@ Status CommandLine::ApplyFlags(OptionTable& options) const {
     if (options.Find(name) == nullptr) {
       if (std::string sentence = options.RenamedSentence(name); !sentence.empty())
         return {ErrorCode::kInvalidArgument, std::move(sentence)};
-      return {ErrorCode::kInvalidArgument,
-              "there is no option --" + name + "; did you mean " + NearestFlag(name, options) + "?"};
+      return {ErrorCode::kInvalidArgument, "there is no option --" + name + Hint(name, options)};
     }
     if (!given.insert(name).second)
       return {ErrorCode::kInvalidArgument, "--" + name + " is given more than once; leave one"};

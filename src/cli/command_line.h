@@ -125,7 +125,7 @@ class CommandLine {
   void AddArgument(Argument argument);
   Status ReadArguments(std::span<const std::string> args);
   Status ApplyFlags(OptionTable& options) const;
-  std::string NearestFlag(std::string_view flag, const OptionTable& options) const;
+  std::string Hint(std::string_view flag, const OptionTable& options) const;
 
   Manual manual_;
   std::vector<Argument> arguments_;

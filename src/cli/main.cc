@@ -69,7 +69,11 @@ int Run(std::span<const std::string> args) {
     return kExitUsage;
   }
   const std::string& name = args.front();
-  if (name == "help" && args.size() > 1) return Run(std::vector<std::string>{args[1], "--help"});
+  if (name == "help" && args.size() > 1) {
+    std::vector<std::string> command(args.begin() + 1, args.end());  // "dataset info" are two words
+    command.emplace_back("--help");
+    return Run(command);
+  }
   if (name == "--help" || name == "-h" || name == "help") {
     std::cout << Usage();
     return kExitOk;
@@ -83,8 +87,9 @@ int Run(std::span<const std::string> args) {
     if (command.name == name) return command.run(args.subspan(1));
     names.emplace_back(command.name);
   }
-  SayError("there is no command '" + name + "'; did you mean '" + NearestName(name, names) +
-           "'? pliant --help lists them");
+  const std::string similar = SimilarName(name, names);
+  SayError("there is no command '" + name + "'; " + (similar.empty() ? "" : "did you mean '" + similar + "'? ") +
+           "pliant --help lists them");
   return kExitUsage;
 }
 

@@ -28,6 +28,8 @@ void SequenceArguments::AddTo(CommandLine* line, const std::string& name, Positi
 }
 
 std::optional<int> SequenceArguments::Check(const CommandLine& line) const {
+  if (fov_deg != SequenceArguments().fov_deg && camera_path != kUnknownCamera)
+    return line.UsageError("--fov_deg is of a camera without a calibration; give --camera unknown with it");
   if (end == -1 || end > start) return std::nullopt;
   return line.UsageError("--end is " + std::to_string(end) + " and --start is " + std::to_string(start) +
                          "; --end is one past the last frame, or -1 for all");

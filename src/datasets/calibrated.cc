@@ -34,9 +34,9 @@ Result<fs::path> FindCalibration(const SequenceRequest& request) {
       fs::is_directory(request.image_path, error) ? request.image_path : request.image_path.parent_path();
   fs::path file = beside / "camera.yaml";
   if (!fs::is_regular_file(file, error))
-    return Status(ErrorCode::kNotFound, "there is no calibration for " + request.image_path.string() + ": no file " +
-                                            file.string() +
-                                            "; name a calibration file, or make one with pliant calibrate");
+    return Status(ErrorCode::kNotFound,
+                  "there is no calibration for " + request.image_path.string() + ": no file " + file.string() +
+                      "; name a calibration file, make one with pliant calibrate, or say --camera unknown");
   return file;
 }
 

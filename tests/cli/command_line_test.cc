@@ -136,12 +136,20 @@ TEST(CommandLine, AnUnknownNameNamesItsNeighborAmongArgumentsAndOptions) {
   for (const auto& [flag, neighbor] : {std::pair{"--Basket.cuont", "--Basket.count"},
                                        {"--basket.weight", "--Basket.weight"},
                                        {"--peices", "--pieces"},
+                                       {"--count", "--Basket.count"},
+                                       {"--wei", "--Basket.weight"},
                                        {"--print-config", "--print_config"}}) {
     const Outcome outcome = Give({"--to", "X", flag, "1"});
     EXPECT_EQ(outcome.exit, kExitUsage) << flag;
     EXPECT_EQ(outcome.err,
               std::string("pliant fill: there is no option ") + flag + "; did you mean " + neighbor + "?\n");
   }
+}
+
+TEST(CommandLine, AnUnknownNameThatIsLikeNoneSaysWhereTheyAreListed) {
+  const Outcome outcome = Give({"--to", "X", "--stereoscopic", "1"});
+  EXPECT_EQ(outcome.exit, kExitUsage);
+  EXPECT_EQ(outcome.err, "pliant fill: there is no option --stereoscopic; pliant fill --help-all lists them\n");
 }
 
 TEST(CommandLine, AnEarlierNameIsRefusedWithTheNameOfToday) {

@@ -58,6 +58,12 @@ TEST(Program, AnUnknownCommandNamesTheNearestOne) {
   const Outcome outcome = Pliant("trakc");
   EXPECT_EQ(outcome.exit, 2);
   EXPECT_EQ(outcome.err, "pliant: there is no command 'trakc'; did you mean 'track'? pliant --help lists them\n");
+  EXPECT_EQ(Pliant("version").err, "pliant: there is no command 'version'; pliant --help lists them\n");
+}
+
+TEST(Program, HelpTakesCommandsOfTwoWords) {
+  EXPECT_THAT(Pliant("help dataset info").out, HasSubstr("pliant dataset info - "));
+  EXPECT_THAT(Pliant("help track").out, HasSubstr("pliant track - "));
 }
 
 TEST(Program, CalibrateRefusesWhatIsNoBoardAndImagesWithoutOne) {

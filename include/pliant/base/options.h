@@ -127,8 +127,11 @@ class OptionTable {
   std::vector<std::pair<std::string, std::string>> renamed_values_;  // "Group.option=old", new
 };
 
-// The entry of `names` nearest to `name` (Levenshtein distance, upper and lower case alike); empty if `names` is empty.
+// The entry of `names` nearest to `name` (Levenshtein distance, upper and lower case alike, and of "Group.name" the
+// name by itself; one that begins with `name` is nearer than any with an edit); empty if `names` is empty.
 std::string NearestName(std::string_view name, const std::vector<std::string>& names);
+// The same, or nothing where half of its letters would have to be others.
+std::string SimilarName(std::string_view name, const std::vector<std::string>& names);
 
 // Prints a double so that it reads back to the same value, in as few digits as possible.
 std::string FormatDouble(double value);
