@@ -65,8 +65,6 @@ DeformingSolution MakeSolution(const DeformingProblem& problem, double cost, con
   return solution;
 }
 
-double LightErrorOf(const DeformingWindow& window) { return CompareWindowWithLight(window).error; }
-
 bool MorePlausible(const DeformingSolution& a, const DeformingSolution& b) {
   double difference = a.cost - b.cost;
   if (a.light_error > 0.0 && b.light_error > 0.0)

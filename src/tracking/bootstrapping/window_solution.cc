@@ -29,8 +29,6 @@ constexpr std::size_t kMinFrames = 6;
 // A light that leaves more of the spread of log distances than this says nothing of distance.
 constexpr double kMaxOfSpread = 0.8;
 constexpr std::ptrdiff_t kMinPriorPoints = 40;  // of a frame, to be compared with the solution
-// Of the error by a depth prior without it: where the error with it is larger, it made no other solution.
-constexpr double kClearlyNearer = 0.85;
 
 // In the frames that a solution is compared with it in, at least.
 bool HasPrior(const InitInput& input, std::size_t frames, const WindowInitOptions& options) {
@@ -185,48 +183,27 @@ Result<SolvedWindow> SolvedWithCue(const InitInput& input, const PreparedWindow&
   return SolvedWindow{window.views, window.ids, std::move(*solution)};
 }
 
-Result<SolvedWindow> SolveWithCue(const InitInput& input, std::size_t frames, DistanceCue cue,
-                                  const WindowInitOptions& options, double nominal_depth_mm) {
-  const WindowInitOptions cued = WithCue(options, cue);
-  const auto window = PrepareWindow(input, frames, cued.views, cued, nominal_depth_mm);
-  return window.ok() ? SolvedWithCue(input, *window, cued) : window.status();
-}
-
-// How far a solution without a cue is from the depth prior.
-double ErrorByPrior(const InitInput& input, const SolvedWindow& solved, const WindowInitOptions& options) {
-  DeformingWindow window = solved.solution.window;
-  window.cue = DistanceCue::kPrior;
-  window.observations.clear();
-  for (std::size_t v = 0; v < solved.views.size(); ++v) {
-    const auto seen = SeenIn(input, input.frames[solved.views[v]], solved.ids, static_cast<int>(v),
-                             WithCue(options, DistanceCue::kPrior));
-    window.observations.insert(window.observations.end(), seen.begin(), seen.end());
-  }
-  return LightErrorOf(window);
-}
-
-// (N4) Without a cue, or with the depth prior where that clearly makes another solution of it.
-Result<SolvedWindow> SolveWithoutLight(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
-                                       double nominal_depth_mm) {
-  auto plain = SolveWithCue(input, frames, DistanceCue::kNone, options, nominal_depth_mm);
-  if (!HasPrior(input, frames, options)) return plain;
-  auto guided = SolveWithCue(input, frames, DistanceCue::kPrior, options, nominal_depth_mm);
-  if (!guided.ok() || ContradictsLight(guided->solution)) return plain;
-  const bool is_nearer =
-      !plain.ok() || guided->solution.light_error < kClearlyNearer * ErrorByPrior(input, *plain, options);
-  return is_nearer ? guided : plain;
-}
-
-// With light as a cue, or without it where the solution contradicts it and is less certain.
+// Where the solution contradicts its cue, the depth prior is one, unless it is contradicted too; else there is none.
 Result<SolvedWindow> SolveDeforming(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
                                     double nominal_depth_mm) {
-  if (options.light == Switch::kOff) return SolveWithoutLight(input, frames, options, nominal_depth_mm);
-  auto lit = SolveWithCue(input, frames, DistanceCue::kLight, options, nominal_depth_mm);
-  if (!lit.ok() || !ContradictsLight(lit->solution)) return lit;
-  auto other = SolveWithoutLight(input, frames, options, nominal_depth_mm);
-  if (!other.ok() || MedianSigma(other->solution) > MedianSigma(lit->solution)) return lit;
-  other->light_is_of_no_use = true;
-  return other;
+  const auto window = PrepareWindow(input, frames, options.views, options, nominal_depth_mm);
+  if (!window.ok()) return window.status();
+  auto first = SolvedWithCue(input, *window, options);
+  if (!first.ok() || !ContradictsLight(first->solution)) return first;
+  std::vector<WindowInitOptions> others;
+  if (options.cue == DistanceCue::kLight && HasPrior(input, frames, options))
+    others.push_back(WithCue(options, DistanceCue::kPrior));
+  others.push_back(WithCue(options, DistanceCue::kNone));
+  for (const WindowInitOptions& other : others) {
+    const auto prepared = PrepareWindow(input, frames, options.views, other, nominal_depth_mm);
+    if (!prepared.ok()) continue;
+    auto solved = SolvedWithCue(input, *prepared, other);
+    if (!solved.ok() || ContradictsLight(solved->solution)) continue;
+    if (MedianSigma(solved->solution) > MedianSigma(first->solution)) continue;
+    solved->light_is_of_no_use = options.cue == DistanceCue::kLight;
+    return solved;
+  }
+  return first;
 }
 
 Result<SolvedWindow> SolvedAsRigid(const InitInput& input, const PreparedWindow& window,

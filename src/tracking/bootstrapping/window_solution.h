@@ -46,8 +46,8 @@ bool ContradictsLight(const DeformingSolution& solution);
 enum class WindowScene { kRigid, kDeforming, kAny };
 
 // The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any, or
-// at once where it is known to deform, with coefficients; where the light turns out to say nothing of these, without it
-// if that is more certain: with the depth prior, or without a cue (N4). Where it may be any and its halves
+// at once where it is known to deform, with coefficients; where the light turns out to say nothing of these, with the
+// depth prior, and where that does not either, with none, if that is more certain. Where it may be any and its halves
 // agree so well that a rigid scene leaves depths less uncertain than coefficients do, or that its depths stand out
 // where those with coefficients do not, as a rigid scene all the same (W19).
 // kInsufficient, kDegenerate: what is missing, or that the scene deforms.

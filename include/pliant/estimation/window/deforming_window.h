@@ -109,9 +109,6 @@ struct DeformingSolution {
   double LogDepthSigma(std::size_t point) const;
 };
 
-// (W8) The light_error of a solved window by the cue and the log_cue that its observations have now; 0: there is none.
-double LightErrorOf(const DeformingWindow& window);
-
 // Solves the window from a rigid start: `start` has times, poses, points and observations, and no coefficients. Images
 // alone hardly tell one minimum from another, so there are several solutions to choose from. Two samples of the points
 // are solved each by itself: the coefficients start from what the rigid scene leaves unexplained, then poses,
