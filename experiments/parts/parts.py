@@ -40,8 +40,9 @@ def row_of(program, name, run, sequence, other):
         row["RMSE"] = f"{figures['surface']['estimate']['mean_rmse_mm']:.2f} mm"
     if figures["trajectory"]:
         row["path"] = f"{figures['trajectory']['ate_rmse_mm']:.2f} mm"
-    if other:
-        row["differs"] = f"{100 * figures['consistency'][0]['estimate']['median_relative_depth']:.1f} %"
+    compared = figures["consistency"][0].get("estimate") if other else None
+    if compared:
+        row["differs"] = f"{100 * compared['median_relative_depth']:.1f} %"
     return row
 
 

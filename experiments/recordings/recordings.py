@@ -43,7 +43,7 @@ def evaluated(program, run, output_path, *arguments):
 
 def depths(compared):
     """Difference, null and frames of depths that were compared, or nothing."""
-    if not compared:
+    if not compared or "estimate" not in compared:
         return None
     return tuple(compared[side]["median_relative_depth"] for side in ("estimate", "null")) + (
         compared["frames_compared"],)

@@ -77,7 +77,7 @@ class Calibration:
 
 
 def calibrate(image_path: StrPath, board: str, output_path: StrPath | None = None,
-              options: OptionValues | None = None, *, figure: StrPath | None = None,
+              options: OptionValues | None = None, *, figure: StrPath | None = None, overwrite: bool = False,
               on_progress: Callable[[int, int], Any] | None = None) -> Calibration:
     """Calibrates a camera from images or a video of a flat board.
 
@@ -87,13 +87,15 @@ def calibrate(image_path: StrPath, board: str, output_path: StrPath | None = Non
         output_path: of camera.yaml; None: it is not written.
         options: such as {"Calibrate.model": "OPENCV_FISHEYE"}.
         figure: a picture of the errors, .png, .svg or .pdf.
+        overwrite: replace files that are there.
         on_progress: called with the images that were searched for the board and the images that are to be.
 
     Raises:
         pliant.Error: the board is not seen, or the images do not determine the camera. Nothing is written then.
     """
     request = {"image_path": given.path(image_path, "image_path"), "board": given.text(board, "board"),
-               "figure": given.optional_path(figure, "figure"), **given.files(output=output_path)}
+               "figure": given.optional_path(figure, "figure"), "overwrite": given.truth(overwrite, "overwrite"),
+               **given.files(output=output_path)}
     return Calibration(**_pliant.calibrate(request, given.options(options),
                                            given.function(on_progress, "on_progress")))
 
@@ -122,11 +124,12 @@ class StereoCalibration:
 
 def calibrate_stereo(image_path: StrPath, board: str, output_path: StrPath | None = None,
                      options: OptionValues | None = None, *, right_path: StrPath | None = None, pairs: str = "none",
+                     overwrite: bool = False,
                      on_progress: Callable[[int, int], Any] | None = None) -> StereoCalibration:
     """Calibrates two cameras that see a flat board at the same time.
 
     Args:
-        image_path, board, options, on_progress: see pliant.calibrate. The models are perspective ones.
+        image_path, board, options, overwrite, on_progress: see pliant.calibrate. The models are perspective ones.
         output_path: of the stereo calibration (OpenCV's YAML), as the camera of a sequence takes it; None: it is not
             written.
         right_path: images or video of the right camera, in the same order.
@@ -139,7 +142,8 @@ def calibrate_stereo(image_path: StrPath, board: str, output_path: StrPath | Non
     if (right_path is None) == (pairs == "none"):
         raise ValueError("give the right camera's images as right_path, or how each image holds both as pairs")
     request = {"image_path": given.path(image_path, "image_path"), "board": given.text(board, "board"),
-               "pairs": given.text(pairs, "pairs"), **given.files(output=output_path, right=right_path)}
+               "pairs": given.text(pairs, "pairs"), "overwrite": given.truth(overwrite, "overwrite"),
+               **given.files(output=output_path, right=right_path)}
     found = _pliant.calibrate_stereo(request, given.options(options), given.function(on_progress, "on_progress"))
     return StereoCalibration(**{**found, "left": Calibration(**found["left"]), "right": Calibration(**found["right"])})
 
@@ -158,11 +162,12 @@ def simulate(output_path: StrPath, options: OptionValues | None = None, *, reali
                      given.function(on_progress, "on_progress"))
 
 
-def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: StrPath, options: OptionValues | None = None, *,
-          camera: StrPath | _pliant.Camera | None = None, timestamps: Several[float] | None = None,
-          preset: str = "default", mask_path: StrPath | None = None, start: int = 0, end: int | None = None,
-          stride: int = 1, initializer: Initializer | str | None = None, tracks: PointFollower | StrPath | None = None,
-          cost: Cost | str | None = None, depth_prior: StrPath | None = None, resume: bool = False,
+def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: StrPath,
+          options: OptionValues | None = None, *, camera: StrPath | _pliant.Camera | None = None,
+          timestamps: Several[float] | None = None, preset: str = "default", mask_path: StrPath | None = None,
+          start: int = 0, end: int | None = None, stride: int = 1, initializer: Initializer | str | None = None,
+          tracks: PointFollower | StrPath | None = None, cost: Cost | str | None = None,
+          depth_prior: StrPath | None = None, resume: bool = False,
           on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
     """Camera pose and the motion of every point.
 
@@ -202,8 +207,8 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
     if isinstance(input, Sequence):
         input, of_sequence = input.path, input.request
         if (camera, mask_path, start, end, stride) != (None, None, 0, None, 1):
-            raise ValueError("the input is a pliant.Sequence, which has its camera, masks and frames; open it with those "
-                             "that are meant")
+            raise ValueError("the input is a pliant.Sequence, which has its camera, masks and frames; open it with "
+                             "those that are meant")
     else:
         of_sequence = sequence_request(mask_path, start, end, stride)
     request: dict[str, Any] = {**of_sequence, "resume": given.truth(resume, "resume")}

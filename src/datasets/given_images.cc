@@ -4,7 +4,6 @@
 #include "pliant/datasets/given_images.h"
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>

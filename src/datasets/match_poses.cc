@@ -22,7 +22,7 @@ struct TimeUnit {
 constexpr std::array<TimeUnit, 4> kTimeUnits{
     {{"seconds", 1.0}, {"milliseconds", 1e-3}, {"microseconds", 1e-6}, {"nanoseconds", 1e-9}}};
 
-// Of the poses, or of the frames where these are fewer: what a clock that is not the sequence's matches by chance.
+// Of the poses, or of the frames: a clock that is not the sequence's matches less, by chance.
 constexpr double kMinMatchedShare = 0.1;
 
 using FrameAtTime = std::map<double, int>;  // seconds of the sequence's clock
@@ -31,6 +31,16 @@ struct NearestPose {
   double difference_s = 0;
   const TimedPose* pose = nullptr;
 };
+
+// How many of the poses have a frame near them.
+std::size_t NumNear(std::span<const TimedPose> poses, const FrameAtTime& frame_at, double unit_s,
+                    double max_difference_s) {
+  return static_cast<std::size_t>(std::ranges::count_if(poses, [&](const TimedPose& pose) {
+    const double time_s = unit_s * pose.timestamp_s;
+    const auto at = frame_at.lower_bound(time_s - max_difference_s);
+    return at != frame_at.end() && at->first <= time_s + max_difference_s;
+  }));
+}
 
 // By frame number.
 std::map<int, NearestPose> NearestPoses(std::span<const TimedPose> poses, const FrameAtTime& frame_at, double unit_s,
@@ -76,12 +86,14 @@ Result<MatchedPoses> MatchPoses(std::span<const TimedPose> poses, const Sequence
     nearest = std::move(found);
     unit = &candidate;
   }
-  const std::size_t possible = std::min(poses.size(), frame_at.size());
-  const bool by_chance = possible > 1 && (nearest.size() == 1 || static_cast<double>(nearest.size()) <
-                                                                     kMinMatchedShare * static_cast<double>(possible));
+  const std::size_t near = NumNear(poses, frame_at, unit->seconds, max_difference_s);
+  const double share = std::max(static_cast<double>(near) / static_cast<double>(std::max<std::size_t>(1, poses.size())),
+                                static_cast<double>(nearest.size()) / static_cast<double>(frame_at.size()));
+  const bool is_several = poses.size() > 1 && frame_at.size() > 1;
+  const bool by_chance = is_several && (nearest.size() == 1 || share < kMinMatchedShare);
   if ((nearest.empty() && !poses.empty()) || by_chance)
     return Status(ErrorCode::kMismatch,
-                  HowMany(nearest.size(), poses.size(), name) + " within " + Seconds(max_difference_s) +
+                  HowMany(near, poses.size(), name) + " within " + Seconds(max_difference_s) +
                       " of a frame: its times go from " + Span(poses.front().timestamp_s, poses.back().timestamp_s) +
                       ", the sequence's from " + Span(frame_at.begin()->first, frame_at.rbegin()->first) +
                       "; write times in seconds of the sequence's clock");

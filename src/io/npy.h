@@ -26,8 +26,9 @@ struct NpyArray {
   Kind kind = Kind::kFloat;
   std::string type;  // as NumPy writes it: <f4, <f8, |b1, |u1, <i4, ...
   std::vector<std::size_t> shape;
-  bool columns_first = false;  // as Fortran has them, and the transpose of an array of NumPy's: the last axis last
-  std::string_view data;       // of the file's bytes, exactly as many as type and shape say
+  bool columns_first =
+      false;  // as Fortran has them, and the transpose of an array of NumPy's: the first axis varies fastest
+  std::string_view data;  // of the file's bytes, exactly as many as type and shape say
 
   std::size_t size() const;  // numbers in all
   // The i-th number, rows first. Integers beyond 2^53 are rounded.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -76,15 +77,23 @@ Result<std::vector<FrameReport>> ImageTracker::Process(const SequenceFrame& fram
                                             "the depth prior of image " + frame.name);
         !status.ok())
       return status;
-  const std::array times_s = {last_timestamp_s_.value_or(frame.timestamp_s - 1), frame.timestamp_s};
-  if (Status status = CheckFrameTimes(times_s, "the times of image " + frame.name + " and the one before are");
-      !status.ok())
-    return status;
+  if (Status status = CheckTime(frame); !status.ok()) return status;
   last_timestamp_s_ = frame.timestamp_s;
+  ++images_;
   kept_.push_back(frame);
   std::vector<FrameReport> done = ProcessFrom(kept_.size() - 1);
   ForgetFrames();
   return done;
+}
+
+// A pause may be long, but the second image does not come a thousand seconds after the first.
+Status ImageTracker::CheckTime(const SequenceFrame& frame) const {
+  if (!std::isfinite(frame.timestamp_s) || (last_timestamp_s_ && !(frame.timestamp_s > *last_timestamp_s_)))
+    return {ErrorCode::kInvalidArgument,
+            "the time of image " + frame.name +
+                " is not finite, or not after that of the one before; give times that grow"};
+  if (images_ != 1) return Status::Ok();
+  return CheckFrameTimes(std::array{*last_timestamp_s_, frame.timestamp_s}, "the times of the first two images are");
 }
 
 std::vector<FrameReport> ImageTracker::Finish() {

@@ -140,6 +140,7 @@ void BindCamera(py::module_& module) {
            "Unit rays (n, 3) in the camera frame through pixels (n, 2); NaN where no ray projects there.")
       .def("write", &Write, py::arg("path"), "Writes a calibration file, a camera.yaml, which read_camera reads again.")
       .def("__eq__", &IsSame, py::is_operator())
+      .def("__hash__", [](const Calibration& c) { return py::hash(py::str(StateOf(c))); })
       .def(py::pickle(&StateOf, &FromState))
       .def("__repr__", &Representation);
   module.def("read_camera", &ReadCalibration, py::arg("path"));

@@ -90,6 +90,10 @@ CalibrateProgress Told(const py::object& on_progress, Interrupt* interrupt) {
   };
 }
 
+ExistingFile ExistingOf(const py::dict& request) {
+  return py::cast<bool>(request["overwrite"]) ? ExistingFile::kOverwrite : ExistingFile::kKeep;
+}
+
 // The camera, a standard deviation a parameter, and what else the calibration says of itself.
 py::dict CalibrationDict(const CalibrateSummary& summary) {
   std::vector<std::tuple<std::string, std::string, std::optional<double>>> images;
@@ -109,9 +113,11 @@ py::dict Calibrate(const py::dict& request, const py::object& options, const py:
   const auto calibrate_options = OptionsOf<CalibrateOptions>(options);
   const std::string figure = Text(request, "figure");
   if (!figure.empty()) RaiseUnlessOk(CheckEnding(ViewOutput::kFigure, figure));
+  RaiseUnlessOk(CheckCalibrationOutput(figure, ExistingOf(request)));
   const CalibrateRequest calibrate_request{.image_path = Text(request, "image_path"),
                                            .board = ValueOf(ParseBoard(Text(request, "board"))),
-                                           .output_path = Text(request, "output_path")};
+                                           .output_path = Text(request, "output_path"),
+                                           .existing = ExistingOf(request)};
   Interrupt interrupt;
   const auto summary = ValueOf(WithoutGil(&interrupt, [&] {
     return CalibrateImages(calibrate_request, calibrate_options, Told(on_progress, &interrupt));
@@ -127,7 +133,8 @@ py::dict CalibrateStereoPairs(const py::dict& request, const py::object& options
                                            .board = ValueOf(ParseBoard(Text(request, "board"))),
                                            .output_path = Text(request, "output_path"),
                                            .right_path = Text(request, "right_path"),
-                                           .pairs = EnumOf<PairLayout>(Text(request, "pairs"), "pairs")};
+                                           .pairs = EnumOf<PairLayout>(Text(request, "pairs"), "pairs"),
+                                           .existing = ExistingOf(request)};
   Interrupt interrupt;
   const auto summary = ValueOf(WithoutGil(
       &interrupt, [&] { return CalibratePairs(calibrate_request, calibrate_options, Told(on_progress, &interrupt)); }));

@@ -31,7 +31,7 @@ std::string TextOf(const py::handle& value, const OptionField& field, bool* ok) 
   *ok = true;
   if (py::hasattr(value, "dtype") && py::hasattr(value, "tolist")) {
     const py::object plain = value.attr("tolist")();
-    return TextOf(plain, field, ok);
+    if (!py::hasattr(plain, "dtype")) return TextOf(plain, field, ok);  // a long double stays one of NumPy's
   }
   if (py::isinstance<py::str>(value)) return py::cast<std::string>(value);
   if (py::isinstance<py::bool_>(value)) {

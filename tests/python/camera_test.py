@@ -80,6 +80,7 @@ class Camera(TestCase):
         for same in (pliant.read_camera(self.folder / "written.yaml"), copy.deepcopy(camera),
                      pickle.loads(pickle.dumps(camera))):
             self.assertEqual(same, camera)
+            self.assertEqual({same: 1}, {camera: 1})
             self.assertEqual((same.model, same.fps), ("OPENCV", 25))
             np.testing.assert_array_equal(same.params, camera.params)
         other = pliant.Camera("OPENCV", 640, 480, camera.params, fps=25)

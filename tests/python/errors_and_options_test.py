@@ -79,8 +79,11 @@ class Arguments(TestCase):
         tracker = pliant.Tracker(camera)
         self.refused("timestamp is a str; give a number", tracker.process, image, timestamp="a")
         tracker.process(image, timestamp=5.0)
-        self.refused("not growing", tracker.process, image, timestamp=1.0)
+        self.refused("not after that of the one before", tracker.process, image, timestamp=1.0)
         self.refused("as nanoseconds would be", tracker.process, image, timestamp=1403636579763555584)
+        paused = pliant.Tracker(camera)
+        for time in (0, 1 / 30, 1200):
+            paused.process(image, timestamp=time)
         with self.assertRaisesRegex(pliant.Error, "is 400x5, but the images are 640x480"):
             tracker.process(image, depth_prior=prior)
         tracker.process(image, timestamp=6.0)
@@ -138,7 +141,7 @@ class Options(TestCase):
 
     def test_values_of_python_and_numpy_are_taken(self):
         options = {"General.seed": np.int64(3), "Growth.grow": np.bool_(False), "Image.working": "fixed",
-                   "Image.smoothing_px": np.array(0.5), "Image.scale": np.array(1)}
+                   "Image.smoothing_px": np.longdouble(0.5), "Image.scale": np.array(1)}
         with self.assertRaises(pliant.Error):  # one frame: options are resolved, and then there is no map
             pliant.track(SEQUENCE, self.folder / "run", options, end=1)
         config = (self.folder / "run" / "config.yaml").read_text()

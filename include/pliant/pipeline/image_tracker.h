@@ -37,7 +37,8 @@ class ImageTracker {
   // reports and their images are held back until there is a map: of WindowInit.last_frame frames, or three times as
   // many where a map waits that is hardly better than one constant depth. Fails with kMismatch for an image or mask
   // that has not the camera's size, and for a depth prior of other sides, and with kInvalidArgument for a time that is
-  // not after that of the frame before (CheckFrameTimes); the frame is passed over then.
+  // not after that of the frame before, and of the second frame for one of another unit (CheckFrameTimes); the frame is
+  // passed over then.
   Result<std::vector<FrameReport>> Process(const SequenceFrame& frame);
   // No more frames come: the reports that are held back.
   std::vector<FrameReport> Finish();
@@ -53,6 +54,7 @@ class ImageTracker {
   ImageTracker(const Camera& source, const Camera& working_camera, const WorkingImage& working,
                const TrackerInputs& inputs, const TrackOptions& options);
   std::vector<FrameReport> ProcessFrom(std::size_t next);
+  Status CheckTime(const SequenceFrame& frame) const;
   bool GoBack(std::size_t* next);
   void ForgetFrames();
 
@@ -62,6 +64,7 @@ class ImageTracker {
   std::unique_ptr<Tracker> tracker_;
   std::vector<SequenceFrame> kept_;         // that are held back: tracking may go back to one of them
   std::optional<double> last_timestamp_s_;  // of the frame before
+  int images_ = 0;                          // that were taken
 };
 
 }  // namespace pliant
