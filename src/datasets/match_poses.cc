@@ -93,7 +93,7 @@ Result<MatchedPoses> MatchPoses(std::span<const TimedPose> poses, const Sequence
   const bool by_chance = is_several && (nearest.size() == 1 || share < kMinMatchedShare);
   if ((nearest.empty() && !poses.empty()) || by_chance)
     return Status(ErrorCode::kMismatch,
-                  HowMany(near, poses.size(), name) + " within " + Seconds(max_difference_s) +
+                  HowMany(std::min(near, nearest.size()), poses.size(), name) + " within " + Seconds(max_difference_s) +
                       " of a frame: its times go from " + Span(poses.front().timestamp_s, poses.back().timestamp_s) +
                       ", the sequence's from " + Span(frame_at.begin()->first, frame_at.rbegin()->first) +
                       "; write times in seconds of the sequence's clock");
