@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "calibration/board_problem.h"
+#include "datasets/image_file.h"
 #include "pipeline/board_search.h"
 #include "pliant/base/files.h"
 #include "pliant/base/parallel.h"
@@ -215,8 +216,6 @@ BoardPairs ChoosePairs(const CalibrateRequest& request, const CalibrateOptions& 
   return chosen;
 }
 
-std::string SizeText(cv::Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
-
 // As OpenCV has it: fx, fy, cx, cy and k1, k2, p1, p2.
 StereoCalibration::Eye EyeOf(const Camera& camera) {
   auto eye = camera.Visit([](const auto& model) {
@@ -274,9 +273,10 @@ Result<CalibratePairsSummary> CalibratePairs(const CalibrateRequest& request, co
   const auto recording = SearchBoards(request, options, progress);
   if (!recording.ok()) return recording.status();
   if (recording->sizes[0] != recording->sizes[1])
-    return Status(ErrorCode::kMismatch, "the left images are " + SizeText(recording->sizes[0]) +
-                                            " and the right ones " + SizeText(recording->sizes[1]) +
-                                            "; give both as they were recorded, at one size");
+    return Status(ErrorCode::kMismatch,
+                  "the left images are " + SizeText(recording->sizes[0].width, recording->sizes[0].height) +
+                      " and the right ones " + SizeText(recording->sizes[1].width, recording->sizes[1].height) +
+                      "; give both as they were recorded, at one size");
   const bool is_apart = !request.right_path.empty();
   const std::string source = request.image_path.string();
   auto left =
