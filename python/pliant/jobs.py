@@ -78,7 +78,7 @@ class Calibration:
 
 def calibrate(image_path: StrPath, board: str, output_path: StrPath | None = None,
               options: OptionValues | None = None, *, figure: StrPath | None = None, overwrite: bool = False,
-              on_progress: Callable[[int, int], Any] | None = None) -> Calibration:
+              on_progress: JobProgress | None = None) -> Calibration:
     """Calibrates a camera from images or a video of a flat board.
 
     Args:
@@ -88,7 +88,8 @@ def calibrate(image_path: StrPath, board: str, output_path: StrPath | None = Non
         options: such as {"Calibrate.model": "OPENCV_FISHEYE"}.
         figure: a picture of the errors, .png, .svg or .pdf.
         overwrite: replace files that are there.
-        on_progress: called with the images that were searched for the board and the images that are to be.
+        on_progress: called with what is done ("search" in images, "start", "fit" and "check" of camera models), how much
+            of it is done, and how much there is (0: not known).
 
     Raises:
         pliant.Error: the board is not seen, or the images do not determine the camera. Nothing is written then.
@@ -125,7 +126,7 @@ class StereoCalibration:
 def calibrate_stereo(image_path: StrPath, board: str, output_path: StrPath | None = None,
                      options: OptionValues | None = None, *, right_path: StrPath | None = None, pairs: str = "none",
                      overwrite: bool = False,
-                     on_progress: Callable[[int, int], Any] | None = None) -> StereoCalibration:
+                     on_progress: JobProgress | None = None) -> StereoCalibration:
     """Calibrates two cameras that see a flat board at the same time.
 
     Args:

@@ -108,27 +108,37 @@ BoardFit Converted(const BoardFit& radial, CameraModelId model) {
   return fit;
 }
 
+Status TellOfModel(const JobProgress& progress, std::string_view task, std::size_t model, std::size_t models) {
+  return Tell(progress, task, static_cast<int>(model), static_cast<int>(models));
+}
+
 // One fit a model; of a fisheye, whose last coefficients only a view up to the image's border determines, also with
 // fewer of them.
-std::vector<BoardFit> FirstFits(const CalibrationInput& input, const std::vector<CameraModelId>& models) {
-  std::vector<BoardFit> fits;
+Result<std::vector<BoardFit>> FirstFits(const CalibrationInput& input, const std::vector<CameraModelId>& models,
+                                        const JobProgress& progress) {
+  std::vector<BoardFit> starts;
   std::optional<BoardFit> radial;
-  for (const CameraModelId model : models) {
-    if (model == CameraModelId::kOpenCvFisheye) {
-      const auto fisheye = FitFromStarts(input, model, kFisheyeStarts_deg);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (Status status = TellOfModel(progress, "start", i, models.size()); !status.ok()) return status;
+    if (models[i] == CameraModelId::kOpenCvFisheye) {
+      const auto fisheye = FitFromStarts(input, models[i], kFisheyeStarts_deg);
       for (const int num_free : {5, 6, 8}) {
         if (!fisheye) break;
-        fits.push_back(*fisheye);
-        fits.back().num_free = num_free;
+        starts.push_back(*fisheye);
+        starts.back().num_free = num_free;
       }
       continue;
     }
     if (!radial) radial = FitFromStarts(input, CameraModelId::kSimpleRadial, kPerspectiveStarts_deg);
-    if (radial) fits.push_back(Converted(*radial, model));
+    if (radial) starts.push_back(Converted(*radial, models[i]));
   }
-  std::erase_if(fits, [&](BoardFit& fit) {
-    return !Solve(input.points, input.views, {}, Intrinsics::kFree, kMaxIterations, &fit) || !IsPlausible(input, fit);
-  });
+  std::vector<BoardFit> fits;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (Status status = TellOfModel(progress, "fit", i, starts.size()); !status.ok()) return status;
+    if (Solve(input.points, input.views, {}, Intrinsics::kFree, kMaxIterations, &starts[i]) &&
+        IsPlausible(input, starts[i]))
+      fits.push_back(std::move(starts[i]));
+  }
   return fits;
 }
 
@@ -335,18 +345,20 @@ Status TooFew(std::size_t views) {
 }  // namespace
 
 Result<CameraCalibration> CalibrateCamera(const CalibrationBoard& board, std::span<const BoardView> views, int width,
-                                          int height, ModelChoice model, int threads, Lenses lenses) {
+                                          int height, ModelChoice model, int threads, Lenses lenses,
+                                          const JobProgress& progress) {
   if (views.size() < kFewestCalibrationViews) return TooFew(views.size());
   const CalibrationInput input{board.Points(), views, width, height, threads};
   const Status undetermined(ErrorCode::kInsufficient,
                             "the images do not determine the focal length; add images in which the board is tilted by "
                             "30 to 45 degrees, in several directions, and fills other parts of the image");
 
-  std::vector<BoardFit> fits = FirstFits(input, ModelsOf(model, lenses));
+  const auto fits = FirstFits(input, ModelsOf(model, lenses), progress);
+  if (!fits.ok()) return fits.status();
 
   // Outliers are those of the fit with the smallest error.
-  if (fits.empty()) return undetermined;
-  const auto best = std::min_element(fits.begin(), fits.end(), [&](const auto& a, const auto& b) {
+  if (fits->empty()) return undetermined;
+  const auto best = std::min_element(fits->begin(), fits->end(), [&](const auto& a, const auto& b) {
     return MedianError(input, a) < MedianError(input, b);
   });
   const std::vector<bool> outliers = Outliers(input, *best);
@@ -357,8 +369,10 @@ Result<CameraCalibration> CalibrateCamera(const CalibrationBoard& board, std::sp
                       "or focus that changed");
 
   std::vector<Candidate> candidates;
-  for (const BoardFit& fit : fits)
-    if (auto candidate = Evaluate(input, outliers, fit)) candidates.push_back(*std::move(candidate));
+  for (std::size_t i = 0; i < fits->size(); ++i) {
+    if (Status status = TellOfModel(progress, "check", i, fits->size()); !status.ok()) return status;
+    if (auto candidate = Evaluate(input, outliers, (*fits)[i])) candidates.push_back(*std::move(candidate));
+  }
   if (candidates.empty()) return undetermined;
   std::vector<HeldOutError> held_out;
   const Candidate& chosen = candidates[Choose(candidates, &held_out)];
@@ -367,7 +381,7 @@ Result<CameraCalibration> CalibrateCamera(const CalibrationBoard& board, std::sp
   calibration.views = FittedViews(input, outliers, chosen.fit);
   calibration.rms_px = RmsOf(calibration.views);
   calibration.held_out = std::move(held_out);
-  if (IsGuess(input, fits, candidates, calibration)) return undetermined;
+  if (IsGuess(input, *fits, candidates, calibration)) return undetermined;
   return calibration;
 }
 

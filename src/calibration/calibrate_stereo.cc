@@ -309,22 +309,26 @@ Result<std::vector<bool>> FitPairs(const StereoInput& input, double alone_px, St
 
 Result<StereoCameras> CalibrateStereo(const CalibrationBoard& board, const Camera& left, const Camera& right,
                                       std::span<const BoardView> left_views, std::span<const BoardView> right_views,
-                                      int threads) {
+                                      int threads, const JobProgress& progress) {
+  constexpr int kSteps = 3;
   for (const Camera* camera : {&left, &right})
     if (camera->model_id() == CameraModelId::kOpenCvFisheye)
       return Status(ErrorCode::kInvalidArgument,
                     "pairs of fisheye cameras cannot be rectified; choose a perspective Calibrate.model");
   if (left_views.size() < kFewestCalibrationPairs) return TooFewPairs(left_views.size());
   StereoInput input{board.Points(), {left_views.begin(), left_views.end()}, {right_views.begin(), right_views.end()}};
+  if (Status status = Tell(progress, "pairs", 0, kSteps); !status.ok()) return status;
   auto start = StartPairs(board, left, right, &input);
   if (!start)
     return Status(ErrorCode::kInsufficient, "the board's pose is not found in every pair; leave out blurred images");
   StereoFit& fit = start->fit;
+  if (Status status = Tell(progress, "pairs", 1, kSteps); !status.ok()) return status;
   auto outliers = FitPairs(input, start->alone_px, &fit);
   if (!outliers.ok()) return outliers.status();
 
   const Rigid3 right_from_left = ToRigid3(fit.right_from_left);
   if (Status status = CheckMount(right_from_left, start->depth_mm); !status.ok()) return status;
+  if (Status status = Tell(progress, "pairs", 2, kSteps); !status.ok()) return status;
   const auto sigmas = JackknifeSigmas(input, *outliers, fit, threads);
   auto refined_left =
       Camera::Create(fit.left_model, left.width(), left.height(), ToVector(fit.left_model, fit.left_params));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -178,7 +179,8 @@ int CalibrateCommand(std::span<const std::string> args) {
   CalibrateRequest request;
   CalibrateOptions options;
   CommandLine line(kCalibrateManual);
-  line.Add("image_path", &image_path, "PATH", "folder of images, or video, of the board", Need::kRequired);
+  line.Add("image_path", &image_path, "PATH", "folder of images, or video, of the board", Need::kRequired,
+           Positional::kYes);
   line.Add("right_path", &right_path, "PATH", "those of a right camera at the same moments", Need::kOptional);
   line.AddChoice("pairs", &request.pairs,
                  "whether each image holds both views of a pair, the left one on the left, or on top");
@@ -206,21 +208,17 @@ int CalibrateCommand(std::span<const std::string> args) {
   if (const auto exit = CheckFigures(line, figure_paths, request.existing)) return *exit;
 
   const std::atomic<bool>& stop = StopOnSignals();
-  std::optional<Progress> progress;
-  const auto on_progress = [&](int done, int total) {
-    if (total > 0 && !progress) progress.emplace("calibrate", total, "images");
-    if (progress) progress->Update(done, "searched for the board");
-    return !stop.load();
+  const auto with_bars = [&](const auto& job) {
+    JobBars bars(stop, "steps");
+    return job(request, options, std::ref(bars));
   };
   if (!request.HasPairs()) {
-    const auto summary = CalibrateImages(request, options, on_progress);
-    progress.reset();
+    const auto summary = with_bars(CalibrateImages);
     if (!summary.ok()) return line.Failure(summary.status().message());
     Say(*summary);
     return Finish(line, output_path, {&*summary}, figure_paths);
   }
-  const auto summary = CalibratePairs(request, options, on_progress);
-  progress.reset();
+  const auto summary = with_bars(CalibratePairs);
   if (!summary.ok()) return line.Failure(summary.status().message());
   Say(*summary);
   return Finish(line, output_path, {&summary->left, &summary->right}, figure_paths);

@@ -136,12 +136,13 @@ void CommandLine::Add(std::string name, int* value, std::string why, int low, in
 }
 
 void CommandLine::Add(std::string name, std::vector<std::string>* values, const std::string& placeholder,
-                      std::string why, Need need) {
+                      std::string why, Need need, Positional positional) {
   AddArgument({std::move(name), placeholder, std::move(why), placeholder, "", need, [values](std::string_view text) {
                  values->emplace_back(text);
                  return !text.empty();
                }});
   arguments_.back().times = Times::kSeveral;
+  arguments_.back().positional = positional;
 }
 
 void CommandLine::AddFlag(std::string name, bool* value, std::string why) {
@@ -182,16 +183,16 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
   app.allow_extras();
   app.set_help_flag();  // the manual is ours
   for (Argument& argument : arguments_) {
+    const std::string names =
+        (argument.positional == Positional::kYes ? argument.name + "," : std::string()) + FlagsOf(argument.name);
     if (argument.placeholder.empty()) {
       app.add_flag_callback(FlagsOf(argument.name), [&argument] { argument.given = {""}; });
     } else if (argument.times == Times::kSeveral) {
       app.add_option_function<std::vector<std::string>>(
-             "--" + argument.name, [&argument](const std::vector<std::string>& values) { argument.given = values; })
+             names, [&argument](const std::vector<std::string>& values) { argument.given = values; })
           ->allow_extra_args(false);  // one value each time it is given
     } else {
-      app.add_option_function<std::string>(
-          (argument.positional == Positional::kYes ? argument.name + "," : std::string()) + FlagsOf(argument.name),
-          [&argument](const std::string& value) { argument.given = {value}; });
+      app.add_option_function<std::string>(names, [&argument](const std::string& value) { argument.given = {value}; });
     }
   }
   try {
@@ -341,7 +342,8 @@ std::string CommandLine::ManualText(const OptionTable& options, Detail detail) c
     if (argument.positional == Positional::kYes) flag = "[--" + argument.name + "] " + argument.placeholder;
     if (argument.need == Need::kRequired) usage += " " + flag;
     if (const std::string short_flag = ShortFlagOf(argument.name); !short_flag.empty()) flag = short_flag + ", " + flag;
-    if (argument.times == Times::kSeveral) flag += " [--" + argument.name + " ...]";
+    if (argument.times == Times::kSeveral)
+      flag += argument.positional == Positional::kYes ? " ..." : " [--" + argument.name + " ...]";
     std::string why = argument.why;
     if (argument.need == Need::kRequired) why += " (required)";
     if (!argument.default_text.empty()) why += " (default: " + argument.default_text + ")";

@@ -40,7 +40,7 @@ struct Manual {
 
 enum class Need { kRequired, kOptional };
 
-// Whether an argument may also be given without its name.
+// Whether an argument may also be given without its name. Each command has at most one: what it is about.
 enum class Positional { kNo, kYes };
 
 // A command of commands: pliant model check.
@@ -63,7 +63,7 @@ class CommandLine {
   void Add(std::string name, int* value, std::string why, int low, int high);
   // An argument that may be given several times; the values in the order given.
   void Add(std::string name, std::vector<std::string>* values, const std::string& placeholder, std::string why,
-           Need need);
+           Need need, Positional positional = Positional::kNo);
   // An argument without a value.
   void AddFlag(std::string name, bool* value, std::string why);
   // One of the given names.

@@ -46,7 +46,7 @@ int CompareCommand(std::span<const std::string> args) {
   std::string figure_path;
   EvaluationOptions options;
   CommandLine line(kCompareManual);
-  line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired);
+  line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired, Positional::kYes);
   line.Add("sequence", &request.sequence_paths, "PATH",
            "the images, with truth where there is; one for all runs, or one for each; without it the runs are compared "
            "with the first one",

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -42,10 +44,10 @@ const Manual kInfoManual = {
 const Manual kDatasetConvertManual = {
     "dataset convert",
     "write a data set as a native sequence",
-    "Reads what lies at --input_path and writes images, right images, masks, depth, poses and times in Pliant's own "
+    "Reads what lies at PATH and writes images, right images, masks, depth, poses and times in Pliant's own "
     "layout: millimeters, right-handed world from camera, rectified pairs, 16-bit depth. The folder must be new or "
     "empty.",
-    {"pliant dataset convert --input_path clip.mp4 --camera stereo.yaml --output_path seq --start 100 --end 400"},
+    {"pliant dataset convert clip.mp4 --camera stereo.yaml --output_path seq --start 100 --end 400"},
 };
 
 const Manual kStatisticsManual = {
@@ -156,7 +158,7 @@ void PrintCheck(const SequenceCheck& check, bool has_pairs) {
 int InfoCommand(std::span<const std::string> args) {
   SequenceArguments arguments;
   CommandLine line(kInfoManual);
-  arguments.AddTo(&line, "path", Positional::kYes);
+  arguments.AddTo(&line);
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable no_options;
   if (const auto exit = line.Resolve(no_options)) return *exit;
@@ -166,7 +168,11 @@ int InfoCommand(std::span<const std::string> args) {
   const auto sequence = OpenSequence(request);
   if (!sequence.ok()) return line.Failure(sequence.status().message());
   PrintDescription(**sequence, request);
-  const auto check = CheckSequence(**sequence);
+  const std::atomic<bool>& stop = StopOnSignals();
+  const auto check = [&] {
+    JobBars bars(stop);
+    return CheckSequence(**sequence, {}, std::ref(bars));
+  }();
   if (!check.ok()) return line.Failure(check.status().message());
   PrintCheck(*check, (*sequence)->BaselineMm().has_value());
   return check->wrong.empty() ? kExitOk : kExitFailed;
@@ -176,7 +182,7 @@ int ConvertCommand(std::span<const std::string> args) {
   SequenceArguments arguments;
   std::string output_path;
   CommandLine line(kDatasetConvertManual);
-  arguments.AddTo(&line, "input_path");
+  arguments.AddTo(&line);
   line.Add("output_path", &output_path, "DIR", "folder of the new sequence", Need::kRequired);
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable no_options;
@@ -227,14 +233,18 @@ void PrintStatistics(const SequenceStatistics& measured) {
 int StatisticsCommand(std::span<const std::string> args) {
   SequenceArguments arguments;
   CommandLine line(kStatisticsManual);
-  arguments.AddTo(&line, "path", Positional::kYes);
+  arguments.AddTo(&line);
   if (const auto exit = line.Parse(args)) return *exit;
   TrackOptions options;
   OptionTable table;
   ListStatisticsOptions(&options, &table);
   if (const auto exit = line.Resolve(table)) return *exit;
   if (const auto exit = arguments.Check(line)) return *exit;
-  const auto measured = MeasureSequenceStatistics(arguments.Request(), options);
+  const std::atomic<bool>& stop = StopOnSignals();
+  const auto measured = [&] {
+    JobBars bars(stop);
+    return MeasureSequenceStatistics(arguments.Request(), options, std::ref(bars));
+  }();
   if (!measured.ok()) return line.Failure(measured.status().message());
   PrintStatistics(*measured);
   return kExitOk;
@@ -245,7 +255,7 @@ int StatisticsCommand(std::span<const std::string> args) {
 int DatasetCommand(std::span<const std::string> args) {
   constexpr Verb kVerbs[] = {{"info", "PATH", InfoCommand},
                              {"statistics", "PATH", StatisticsCommand},
-                             {"convert", "--input_path PATH --output_path DIR", ConvertCommand}};
+                             {"convert", "PATH --output_path DIR", ConvertCommand}};
   return RunVerb("dataset", kVerbs, args);
 }
 

@@ -102,7 +102,8 @@ int EvaluateCommand(std::span<const std::string> args) {
   std::string output_path;
   EvaluationOptions options;
   CommandLine line(kEvaluateManual);
-  line.Add("run", &request.run_path, "DIR", "run folder; needed unless --tracks or --stir is given", Need::kOptional);
+  line.Add("run", &request.run_path, "DIR", "run folder; needed unless --tracks or --stir is given", Need::kOptional,
+           Positional::kYes);
   line.AddAlias("tracks", "TrackFile.path", "FILE",
                 "instead of a run: a file of point tracks, as pliant track --tracks reads it");
   line.AddAlias("tracks_pixel_origin", "TrackFile.pixel_origin", "center|corner",

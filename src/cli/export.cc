@@ -49,7 +49,7 @@ int ExportCommand(std::span<const std::string> args) {
                      "pliant export --run run --format canonical --output_path text --Export.files text",
                      "pliant export --run run --format database --output_path colmap",
                      "pliant export --run run --format nerfstudio --surface surface --output_path splats"}});
-  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
+  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired, Positional::kYes);
   line.AddChoice("format", &request.format, FormatNames(), "what to write");
   line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH",

@@ -41,7 +41,7 @@ int ImportCommand(std::span<const std::string> args) {
   ImportOptions options;
   OutputFolder output;
   CommandLine line(kImportManual);
-  line.Add("input_path", &request.input_path, "PATH", "what to import", Need::kRequired);
+  line.Add("input_path", &request.input_path, "PATH", "what to import", Need::kRequired, Positional::kYes);
   line.AddChoice("format", &request.format, "what it is");
   line.Add("sequence", &request.sequence_path, "PATH", "the images that it was made of", Need::kRequired);
   line.Add("camera", &request.camera_path, "FILE",

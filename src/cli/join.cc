@@ -47,7 +47,7 @@ int JoinCommand(std::span<const std::string> args) {
   JoinOptions options;
   OutputFolder output;
   CommandLine line(kJoinManual);
-  line.Add("run", &request.run_paths, "DIR", "run folder of a part, in any order", Need::kRequired);
+  line.Add("run", &request.run_paths, "DIR", "run folder of a part, in any order", Need::kRequired, Positional::kYes);
   output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   AddSequenceOfKilledRun(&line, &request.sequence_path, &request.camera_path);
   if (const auto exit = line.Parse(args)) return *exit;

@@ -20,6 +20,7 @@ import sys
 from dataclasses import dataclass, field
 
 PATHS = {"PATH": "path", "path": "path", "FILE": "path", "DIR": "folder"}
+HELP = "print the manual of a command"  # pliant help COMMAND, which has no manual of its own
 
 
 @dataclass
@@ -89,8 +90,9 @@ def read_values(option, values):
 
 
 def read_argument(first, text):
-    """An entry of ARGUMENTS: "-o, --output_path DIR", "[--path] PATH", "--run DIR [--run ...]" or "--quiet"."""
-    match = re.fullmatch(r"(?:-(\w), )?(\[)?--([\w-]+)\]?(?: (?!\[)(\S+))?( \[--.* \.\.\.\])?", first)
+    """An entry of ARGUMENTS: "-o, --output_path DIR", "[--run] DIR", "[--run] DIR ...", "--video FILE [--video ...]" or
+    "--quiet"."""
+    match = re.fullmatch(r"(?:-(\w), )?(\[)?--([\w-]+)\]?(?: (?!\[)(\S+))?( \[--.* \.\.\.\]| \.\.\.)?", first)
     if match is None:
         sys.exit(f"make_manual.py: there is an argument that it cannot read: {first!r}")
     short, positional, name, values, several = match.groups()
@@ -231,6 +233,7 @@ def overview_page(title, commands, version, pages):
               r"\fB\-\-help\fR.", ".SH COMMANDS"]
     for command in commands:
         lines += [".TP", rf"\fB{roff(' '.join(command.words))}\fR", roff(command.summary)]
+    lines += [".TP", r"\fBhelp\fR \fICOMMAND\fR", HELP]
     return lines + see_also(pages, "pliant")
 
 
@@ -324,7 +327,8 @@ complete -F _pliant pliant
 
 
 def bash_completion(commands):
-    words = {"": [command.words[0] for command in commands] + ["--help", "--version"]}
+    first = [command.words[0] for command in commands]
+    words = {"": [*first, "help", "--help", "--version"], "help": first}
     values = {}
     for command in commands:
         if command.verbs:
@@ -368,7 +372,8 @@ def zsh_specs(command):
             equals = "" if option.kind == "flag" else "=" if name.startswith("--") else "+"
             yield shlex.quote(f"{repeat}{name}{equals}[{zsh_text(option.text)}]{end}")
         if option.positional:
-            yield shlex.quote(f"1:{option.kind}:{zsh_action(option)}")
+            place = "*" if option.several else "1"
+            yield shlex.quote(f"{place}:{option.kind}:{zsh_action(option)}")
 
 
 def zsh_command(command, indent):
@@ -386,7 +391,9 @@ def zsh_completion(commands):
             "_arguments -C '--help[list the commands]' '--version[print the version]' '1:command:->command' "
             "'*::argument:->argument'\ncase $state in\n  command)\n    known=(\n")
     text += "".join(f"      {zsh_description(command.words[0], command.summary)}\n" for command in commands)
+    text += f"      {zsh_description('help', HELP)}\n"
     text += "    )\n    _describe command known\n    ;;\n  argument)\n    case $words[1] in\n"
+    text += f"      help)\n        _arguments '1:command:({' '.join(command.words[0] for command in commands)})'\n        ;;\n"
     for command in commands:
         if not command.verbs:
             text += zsh_command(command, "      ")
@@ -416,6 +423,9 @@ def fish_quote(text):
 
 def fish_completion(commands):
     text = "# fish completion of pliant, made by make_manual.py from the program's own manual.\n\ncomplete -c pliant -f\n"
+    every = " ".join(command.words[0] for command in commands)
+    text += (f"complete -c pliant -n __fish_use_subcommand -a help -d {fish_quote(HELP)}\n"
+             f"complete -c pliant -n '__fish_seen_subcommand_from help' -a '{every}'\n")
     for command in commands:
         text += (f"complete -c pliant -n __fish_use_subcommand -a {command.words[0]} "
                  f"-d {fish_quote(command.summary)}\n")
@@ -428,7 +438,8 @@ def fish_completion(commands):
         for option in command.options():
             if option.positional:
                 seen = "; and ".join(f"__fish_seen_subcommand_from {word}" for word in command.words)
-                text += f"complete -c pliant -n '{seen}' -F\n"
+                folders = " -a '(__fish_complete_directories)'" if option.kind == "folder" else " -F"
+                text += f"complete -c pliant -n '{seen}'{folders}\n"
     return text
 
 

@@ -37,7 +37,7 @@ const Manual kModelConvertManual = {
     "Reads a folder with cameras, images and points3D, and writes them into another, as COLMAP itself does: a model "
     "that COLMAP wrote comes back byte for byte. All files appear at the end, or none. --rigs writes rigs and frames "
     "too, where there are some; without it the model is one that every version of COLMAP reads.",
-    {"pliant model convert --input_path sparse/0 --output_path text --format text"},
+    {"pliant model convert sparse/0 --output_path text --format text"},
 };
 
 std::string Counts(const colmap::Model& model) {
@@ -61,7 +61,7 @@ std::string NameThatColmapCuts(const colmap::Model& model) {
 int CheckCommand(std::span<const std::string> args) {
   std::string path;
   CommandLine line(kCheckManual);
-  line.Add("path", &path, "DIR", "folder of the model", Need::kRequired, Positional::kYes);
+  line.Add("input_path", &path, "DIR", "folder of the model", Need::kRequired, Positional::kYes);
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable no_options;
   if (const auto exit = line.Resolve(no_options)) return *exit;
@@ -86,7 +86,7 @@ int ConvertCommand(std::span<const std::string> args) {
   colmap::Format format = colmap::Format::kBinary;
   bool with_rigs = false;
   CommandLine line(kModelConvertManual);
-  line.Add("input_path", &input_path, "DIR", "folder of the model", Need::kRequired);
+  line.Add("input_path", &input_path, "DIR", "folder of the model", Need::kRequired, Positional::kYes);
   line.Add("output_path", &output_path, "DIR", "folder to write, made if need be", Need::kRequired);
   line.AddChoice("format", &format, "what to write");
   line.AddFlag("rigs", &with_rigs, "write rigs and frames too (COLMAP 3.12 and later)");
@@ -113,8 +113,7 @@ int ConvertCommand(std::span<const std::string> args) {
 }  // namespace
 
 int ModelCommand(std::span<const std::string> args) {
-  constexpr Verb kVerbs[] = {{"check", "DIR", CheckCommand},
-                             {"convert", "--input_path DIR --output_path DIR", ConvertCommand}};
+  constexpr Verb kVerbs[] = {{"check", "DIR", CheckCommand}, {"convert", "DIR --output_path DIR", ConvertCommand}};
   return RunVerb("model", kVerbs, args);
 }
 

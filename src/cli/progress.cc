@@ -112,7 +112,7 @@ bool JobBars::operator()(std::string_view task, int done, int total) {
     bar_.reset();
     task_ = task;
     start_ = Progress::Clock::now();
-    bar_.emplace(task_, total);
+    bar_.emplace(task_, total, unit_);
   }
   if (Progress::Clock::now() - start_ >= kSilence) bar_->Update(done, "");
   return !stop_.load();

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace pliant::cli {
 
@@ -73,14 +74,15 @@ class JobBars {
  public:
   static constexpr std::chrono::seconds kSilence{1};
 
-  // Ends the job when this is set; must outlive it.
-  explicit JobBars(const std::atomic<bool>& stop) : stop_(stop) {}
+  // Ends the job when `stop` is set; must outlive it. `unit` is what its tasks count.
+  explicit JobBars(const std::atomic<bool>& stop, std::string unit = "frames") : stop_(stop), unit_(std::move(unit)) {}
 
   // As a JobProgress: false: stop.
   bool operator()(std::string_view task, int done, int total);
 
  private:
   const std::atomic<bool>& stop_;
+  std::string unit_;
   std::string task_;
   Progress::Clock::time_point start_;
   std::optional<Progress> bar_;

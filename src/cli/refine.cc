@@ -31,7 +31,7 @@ int RefineCommand(std::span<const std::string> args) {
   RefineOptions options;
   OutputFolder output;
   CommandLine line(kRefineManual);
-  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
+  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired, Positional::kYes);
   output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   AddSequenceOfKilledRun(&line, &request.sequence_path, &request.camera_path);
   if (const auto exit = line.Parse(args)) return *exit;

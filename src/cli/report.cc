@@ -120,7 +120,7 @@ Result<std::vector<std::string>> WriteFilmWithProgress(const ReportArguments& ar
 int ReportCommand(std::span<const std::string> args) {
   ReportArguments arguments;
   CommandLine line(kReportManual);
-  line.Add("run", &arguments.view.run_paths, "DIR", "run folder", Need::kRequired);
+  line.Add("run", &arguments.view.run_paths, "DIR", "run folder", Need::kRequired, Positional::kYes);
   line.Add("sequence", &arguments.view.sequence_path, "PATH",
            "the images, with truth where there is; without it those that the first run's run.json names",
            Need::kOptional);

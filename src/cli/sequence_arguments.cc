@@ -12,10 +12,11 @@ constexpr const char* kUnknownCamera = "unknown";
 
 }  // namespace
 
-void SequenceArguments::AddTo(CommandLine* line, const std::string& name, Positional positional) {
+void SequenceArguments::AddTo(CommandLine* line) {
   constexpr int kMaxFrame = 2147483647;
-  line->Add(name, &path, "PATH", "a data set: folder of images, native sequence, video or another (docs/datasets.md)",
-            Need::kRequired, positional);
+  line->Add("image_path", &path, "PATH",
+            "a data set: folder of images, native sequence, video or another (docs/datasets.md)", Need::kRequired,
+            Positional::kYes);
   line->Add("camera", &camera_path, "FILE",
             "calibration; not needed where camera.yaml lies in the folder or beside the video; unknown: there is none",
             Need::kOptional);

@@ -21,8 +21,7 @@ struct SequenceArguments {
   int end = -1;
   int stride = 1;
 
-  // `name` of the path's argument.
-  void AddTo(CommandLine* line, const std::string& name, Positional positional = Positional::kNo);
+  void AddTo(CommandLine* line);
   // An exit code where the arguments contradict each other (the sentence has been said).
   std::optional<int> Check(const CommandLine& line) const;
   SequenceRequest Request() const;

@@ -42,7 +42,7 @@ int SurfaceCommand(std::span<const std::string> args) {
   OutputFolder output;
   std::string frames;
   CommandLine line(kSurfaceManual);
-  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
+  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired, Positional::kYes);
   output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH", "the run's images; without it those that its run.json names",
            Need::kOptional);

@@ -71,7 +71,7 @@ struct TrackArguments {
 };
 
 void AddArguments(TrackArguments* arguments, CommandLine* line) {
-  arguments->input.AddTo(line, "image_path", Positional::kYes);
+  arguments->input.AddTo(line);
   arguments->output.AddTo(line,
                           "run folder; made where it is not there (default: the images' name with date and time, here)",
                           Need::kOptional);

@@ -67,7 +67,8 @@ Status Follow(const Arguments& arguments) {
 int TruthCommand(std::span<const std::string> args) {
   Arguments arguments;
   CommandLine line(kTruthManual);
-  line.Add("sequence", &arguments.sequence_path, "DIR", "folder of a simulated sequence", Need::kRequired);
+  line.Add("sequence", &arguments.sequence_path, "DIR", "folder of a simulated sequence", Need::kRequired,
+           Positional::kYes);
   line.Add("points", &arguments.points_path, "FILE", "CSV file of the pixels to follow", Need::kOptional);
   line.Add("grid_px", &arguments.grid_px, "follow every Nth pixel each way instead; 0: none", 0, 10000);
   line.Add("frame", &arguments.frame_idx, "frame of the grid", 0, 1000000);

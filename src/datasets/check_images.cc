@@ -152,7 +152,7 @@ void JudgeDamaged(ImageCheck* check) {
   if (check->damaged <= 0) return;
   check->wrong.push_back(
       ShareText(check->damaged, check->damaged + check->images, "frames") +
-      " of the video are damaged and left out, where points jump; copy it again, or convert it anew");
+      " are damaged and left out, where points jump; copy the recording again, or convert it anew");
 }
 
 void JudgeMasks(const MaskSide& left, const MaskSide& taken, ImageCheck* check) {

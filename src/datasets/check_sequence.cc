@@ -96,7 +96,7 @@ std::vector<std::string> WhatIsWrong(const SequenceCheck& check) {
 
 }  // namespace
 
-Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& options) {
+Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& options, const JobProgress& progress) {
   const std::vector<int> bases = BaseFrames(sequence.size(), options.base_frames);
   std::map<int, std::set<int>> compared;  // base, and the frames that are compared with it, by position in the sequence
   std::set<int> wanted;
@@ -112,6 +112,7 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
   const int last = wanted.empty() ? (bases.empty() ? -1 : bases.back()) : *wanted.rbegin();
   ImageChecker checker;
   for (int position = 0; options.images || position <= last; ++position) {
+    if (Status status = Tell(progress, "check", position, sequence.size()); !status.ok()) return status;
     auto frame = sequence.Next();
     if (!frame.ok()) return frame.status();
     if (!frame->has_value()) break;

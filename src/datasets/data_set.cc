@@ -44,11 +44,13 @@ FrameRange ByItsWord(const FrameRange& range, const ImageStream& images) {
 Status CheckStoredSizes(const ImageStream& images, const FrameRange& range) {
   std::optional<std::pair<int, cv::Size>> first;
   for (int idx = range.start; idx < range.end; idx += range.stride) {
-    const std::optional<cv::Size> size = images.StoredSize(idx);
-    if (!size) continue;
-    if (!first) first = {idx, *size};
-    if (*size != first->second)
-      return {ErrorCode::kMismatch, images.Title(idx) + " is " + SizeText(size->width, size->height) + ", but " +
+    const auto stored = images.StoredSize(idx);
+    if (!stored.ok()) return stored.status();
+    if (!stored->has_value()) continue;
+    const cv::Size size = **stored;
+    if (!first) first = {idx, size};
+    if (size != first->second)
+      return {ErrorCode::kMismatch, images.Title(idx) + " is " + SizeText(size.width, size.height) + ", but " +
                                         images.Name(first->first) + " is " +
                                         SizeText(first->second.width, first->second.height) +
                                         "; the size may not change within a sequence"};
@@ -69,7 +71,7 @@ class DataSetSequence final : public Sequence {
   const Camera& camera() const override { return data_set_.calibration.camera; }
   int size() const override { return KnownRange().Count(); }
   Result<std::optional<SequenceFrame>> Next() override;
-  Status CheckSizes() const override;
+  Status CheckFiles() const override;
   std::optional<PhotometricCalibration> Photometric() const override { return data_set_.calibration.photometric; }
   std::optional<double> BaselineMm() const override;
   std::optional<double> Fps() const override { return data_set_.calibration.fps; }
@@ -170,7 +172,7 @@ Status DataSetSequence::OpenDepthPriors(const fs::path& folder) {
   return Status::Ok();
 }
 
-Status DataSetSequence::CheckSizes() const {
+Status DataSetSequence::CheckFiles() const {
   const FrameRange range = KnownRange();
   if (Status status = CheckStoredSizes(images(), range); !status.ok()) return status;
   if (BaselineMm())
@@ -178,8 +180,12 @@ Status DataSetSequence::CheckSizes() const {
   if (!masks_) return Status::Ok();
   for (int idx = range.start; idx < range.end; idx += range.stride) {
     const fs::path mask = masks_->Find(idx, fs::path(images().Name(idx)).stem().string());
-    const std::optional<cv::Size> size = ReadImageSize(mask);
-    if (!size) continue;
+    std::optional<cv::Size> size = ReadImageSize(mask);
+    if (!size) {
+      const Result<cv::Mat> decoded = ReadMaskImage(mask);
+      if (!decoded.ok()) return decoded.status();
+      size = decoded->size();
+    }
     if (Status status = CheckFrameMaskSize(mask, *size, MaskSize()); !status.ok()) return status;
   }
   return Status::Ok();

@@ -31,8 +31,11 @@ class FileStream final : public ImageStream {
     return image->size();
   }
 
-  std::optional<cv::Size> StoredSize(int idx) const override {
-    return idx < count() ? ReadImageSize(At(idx)) : std::nullopt;
+  Result<std::optional<cv::Size>> StoredSize(int idx) const override {
+    if (idx >= count()) return std::optional<cv::Size>();
+    if (const auto size = ReadImageSize(At(idx))) return std::optional(*size);
+    const Result<cv::Mat> image = ReadImage(At(idx));
+    return image.ok() ? Result(std::optional(image->size())) : image.status();
   }
 
   Result<std::optional<cv::Mat>> Read(int idx) override {

@@ -36,9 +36,9 @@ class ImageStream {
   // What the images' size is said to be, or that of image `idx`; nothing where it cannot be seen.
   virtual std::optional<cv::Size> SizeAt(int idx) const = 0;
 
-  // The size that the file of image `idx` says without being decoded, before any change of it; nothing where it says
-  // none, or there is no file.
-  virtual std::optional<cv::Size> StoredSize(int /*idx*/) const { return std::nullopt; }
+  // The size of the file of image `idx`, before any change of it; nothing where there is no file. Only a file whose
+  // head does not say it is decoded, and then fails as Read does.
+  virtual Result<std::optional<cv::Size>> StoredSize(int /*idx*/) const { return std::optional<cv::Size>(); }
 
   // 8-bit, gray or BGR; nothing beyond the end. `idx` may not be smaller than the time before. Fails with kNotFound or
   // kUnreadable; a list of files can be read on after that, a video that breaks off ends.

@@ -28,7 +28,7 @@ class DerivedStream : public ImageStream {
   std::optional<double> fps() const override { return source_->fps(); }
   std::string Name(int idx) const override { return source_->Name(idx); }
   std::string Title(int idx) const override { return source_->Title(idx); }
-  std::optional<cv::Size> StoredSize(int idx) const override { return source_->StoredSize(idx); }
+  Result<std::optional<cv::Size>> StoredSize(int idx) const override { return source_->StoredSize(idx); }
   bool IsDamaged(int idx) const override { return source_->IsDamaged(idx); }
   std::optional<double> RecordedS() const override { return source_->RecordedS(); }
 

@@ -98,7 +98,7 @@ class SharpestImages {
 }  // namespace
 
 Result<BoardRecording> SearchBoards(const CalibrateRequest& request, const CalibrateOptions& options,
-                                    const CalibrateProgress& progress) {
+                                    const JobProgress& progress) {
   if (Status status = CheckBoardIsSupported(request.board); !status.ok()) return status;
   auto reader = BoardImageReader::Open(request);
   if (!reader.ok()) return reader.status();
@@ -108,12 +108,12 @@ Result<BoardRecording> SearchBoards(const CalibrateRequest& request, const Calib
     if (!image.ok()) return image.status();
     if (!*image) break;
     sharpest.Add(**std::move(image));
-    if (!progress(sharpest.searched(), reader->expected() > 0 ? sharpest.expected() : 0))
-      return Status(ErrorCode::kInterrupted, "the calibration was stopped");
+    const int expected = reader->expected() > 0 ? sharpest.expected() : 0;
+    if (Status status = Tell(progress, "search", sharpest.searched(), expected); !status.ok()) return status;
   }
   BoardRecording recording{sharpest.Take(), reader->sizes(), reader->count(), reader->fps()};
   const auto searched = static_cast<int>(recording.images.size());
-  if (!progress(searched, searched)) return Status(ErrorCode::kInterrupted, "the calibration was stopped");
+  if (Status status = Tell(progress, "search", searched, searched); !status.ok()) return status;
   return recording;
 }
 

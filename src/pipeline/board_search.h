@@ -33,6 +33,6 @@ struct BoardRecording {
 
 // Searches at most CalibrateOptions::max_images. Fails as CalibrateImages does.
 Result<BoardRecording> SearchBoards(const CalibrateRequest& request, const CalibrateOptions& options,
-                                    const CalibrateProgress& progress);
+                                    const JobProgress& progress);
 
 }  // namespace pliant

@@ -153,7 +153,7 @@ Status CheckSize(const CalibrateRequest& request, const std::vector<cv::Mat>& im
 // One camera of the recording, alone. `source` is what messages call its images.
 Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const CalibrateOptions& options,
                                       const BoardRecording& recording, std::size_t camera, Lenses lenses,
-                                      const std::string& source) {
+                                      const std::string& source, const JobProgress& progress) {
   std::vector<BoardView> seen;
   std::vector<std::size_t> image_of_seen;
   std::vector<cv::Mat> all;
@@ -175,7 +175,8 @@ Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const Cal
   std::vector<BoardView> views;
   for (const int view : chosen) views.push_back(seen[static_cast<std::size_t>(view)]);
   auto calibration =
-      CalibrateCamera(request.board, views, size.width, size.height, options.model, options.threads, lenses);
+      CalibrateCamera(request.board, views, size.width, size.height, options.model, options.threads, lenses, progress);
+  if (!calibration.ok() && calibration.status().code() == ErrorCode::kInterrupted) return calibration.status();
   if (!calibration.ok()) return Status(calibration.status().code(), source + ": " + calibration.status().message());
 
   CalibrateSummary summary{.calibration = *std::move(calibration)};
@@ -255,11 +256,11 @@ void CalibrateOptions::List(OptionTable& table) {
 }
 
 Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const CalibrateOptions& options,
-                                         const CalibrateProgress& progress) {
+                                         const JobProgress& progress) {
   if (Status status = CheckCalibrationOutput(request.output_path, request.existing); !status.ok()) return status;
   const auto recording = SearchBoards(request, options, progress);
   if (!recording.ok()) return recording.status();
-  auto summary = CalibrateOne(request, options, *recording, 0, Lenses::kAll, request.image_path.string());
+  auto summary = CalibrateOne(request, options, *recording, 0, Lenses::kAll, request.image_path.string(), progress);
   if (!summary.ok() || request.output_path.empty()) return summary;
   CameraFile file{summary->calibration.camera};
   file.fps = recording->fps;
@@ -268,7 +269,7 @@ Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const 
 }
 
 Result<CalibratePairsSummary> CalibratePairs(const CalibrateRequest& request, const CalibrateOptions& options,
-                                             const CalibrateProgress& progress) {
+                                             const JobProgress& progress) {
   if (Status status = CheckCalibrationOutput(request.output_path, request.existing); !status.ok()) return status;
   const auto recording = SearchBoards(request, options, progress);
   if (!recording.ok()) return recording.status();
@@ -279,15 +280,15 @@ Result<CalibratePairsSummary> CalibratePairs(const CalibrateRequest& request, co
                       "; give both as they were recorded, at one size");
   const bool is_apart = !request.right_path.empty();
   const std::string source = request.image_path.string();
-  auto left =
-      CalibrateOne(request, options, *recording, 0, Lenses::kPerspective, is_apart ? source : source + " (left)");
+  auto left = CalibrateOne(request, options, *recording, 0, Lenses::kPerspective,
+                           is_apart ? source : source + " (left)", progress);
   if (!left.ok()) return left.status();
   auto right = CalibrateOne(request, options, *recording, 1, Lenses::kPerspective,
-                            is_apart ? request.right_path.string() : source + " (right)");
+                            is_apart ? request.right_path.string() : source + " (right)", progress);
   if (!right.ok()) return right.status();
   const BoardPairs pairs = ChoosePairs(request, options, *recording);
   auto stereo = CalibrateStereo(request.board, left->calibration.camera, right->calibration.camera, pairs.left,
-                                pairs.right, options.threads);
+                                pairs.right, options.threads, progress);
   if (!stereo.ok()) return stereo.status();
   if (!request.output_path.empty()) {
     const StereoCalibration file{EyeOf(stereo->left), EyeOf(stereo->right), stereo->right_from_left,

@@ -14,9 +14,11 @@ namespace pliant {
 namespace {
 
 constexpr int kMaxRuns = 30;
+
 }  // namespace
 
-Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& request, const TrackOptions& options) {
+Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& request, const TrackOptions& options,
+                                                     const JobProgress& progress) {
   const auto sequence = OpenSequence(request);
   if (!sequence.ok()) return sequence.status();
   SequenceStatistics measured{
@@ -28,6 +30,7 @@ Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& requ
   std::vector<RunMeasurement> runs;
   std::vector<PreparedFrame> run;
   for (int read = 0; std::ssize(runs) < kMaxRuns; ++read) {
+    if (Status status = Tell(progress, "statistics", read, frames); !status.ok()) return status;
     const auto next = (*sequence)->Next();
     if (!next.ok()) return next.status();
     if (!next->has_value()) break;

@@ -338,7 +338,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   cv::setNumThreads(usable.threads);
   auto sequence = OpenSequence(request.input);
   if (!sequence.ok()) return sequence.status();
-  if (Status status = (*sequence)->CheckSizes(); !status.ok()) return status;
+  if (Status status = (*sequence)->CheckFiles(); !status.ok()) return status;
   const RunIdentity identity = IdentityOf(request, options, **sequence);
   if (checkpoint)
     if (Status status = CheckIdentity(checkpoint->point.run, identity, request.output_path); !status.ok())

@@ -82,14 +82,6 @@ void Simulate(const std::string& output_path, const py::object& options, const s
   RaiseUnlessOk(status);
 }
 
-// Tells Python of images that were searched; stops when that raises, or on Ctrl-C.
-CalibrateProgress Told(const py::object& on_progress, Interrupt* interrupt) {
-  return [&on_progress, interrupt](int done, int total) {
-    if (total > 0 && !on_progress.is_none()) interrupt->Call([&] { on_progress(done, total); });
-    return !interrupt->stop().load();
-  };
-}
-
 ExistingFile ExistingOf(const py::dict& request) {
   return py::cast<bool>(request["overwrite"]) ? ExistingFile::kOverwrite : ExistingFile::kKeep;
 }
@@ -120,7 +112,7 @@ py::dict Calibrate(const py::dict& request, const py::object& options, const py:
                                            .existing = ExistingOf(request)};
   Interrupt interrupt;
   const auto summary = ValueOf(WithoutGil(&interrupt, [&] {
-    return CalibrateImages(calibrate_request, calibrate_options, Told(on_progress, &interrupt));
+    return CalibrateImages(calibrate_request, calibrate_options, Telling(on_progress, &interrupt));
   }));
   if (!figure.empty()) RaiseUnlessOk(WriteCalibrationFigure(summary, figure));
   return CalibrationDict(summary);
@@ -136,8 +128,9 @@ py::dict CalibrateStereoPairs(const py::dict& request, const py::object& options
                                            .pairs = EnumOf<PairLayout>(Text(request, "pairs"), "pairs"),
                                            .existing = ExistingOf(request)};
   Interrupt interrupt;
-  const auto summary = ValueOf(WithoutGil(
-      &interrupt, [&] { return CalibratePairs(calibrate_request, calibrate_options, Told(on_progress, &interrupt)); }));
+  const auto summary = ValueOf(WithoutGil(&interrupt, [&] {
+    return CalibratePairs(calibrate_request, calibrate_options, Telling(on_progress, &interrupt));
+  }));
   const StereoCameras& stereo = summary.stereo;
   using py::literals::operator""_a;
   return py::dict("left"_a = CalibrationDict(summary.left), "right"_a = CalibrationDict(summary.right),

@@ -166,6 +166,6 @@ WRITERS = [tuple(command.split()) for command in [
     "compare --run run --run refined --sequence seq -o OUT.json",
     "model convert --input_path text --output_path OUT",
     "import --input_path text --sequence seq -o OUT --overwrite",
-    "dataset convert --input_path seq -o OUT --end 6",
+    "dataset convert seq -o OUT --end 6",
     "truth --sequence seq --grid_px 16 -o OUT.csv",
 ]]

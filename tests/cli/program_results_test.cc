@@ -57,6 +57,15 @@ TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
   EXPECT_THAT(ReadText(out + "/1/evaluation.csv"), StartsWith("frame,tracked,points,"));
   EXPECT_THAT(ReadText(figure), StartsWith("%PDF"));
 
+  // What a command is about needs no name, however many there are.
+  const Outcome unnamed = Pliant("compare '" + a + "' '" + b + "' --sequence '" + sequence + "' --protocol all");
+  EXPECT_EQ(unnamed.exit, 0) << unnamed.err;
+  EXPECT_EQ(unnamed.out, both.out.substr(0, unnamed.out.size()));
+  EXPECT_EQ(Pliant("evaluate '" + a + "' --sequence '" + sequence + "' --parts material").out,
+            Pliant("evaluate --run '" + a + "' --sequence '" + sequence + "' --parts material").out);
+  EXPECT_THAT(Pliant("evaluate '" + a + "' '" + b + "' --sequence '" + sequence + "'").err,
+              HasSubstr("does not know what to do with '" + b + "'"));
+
   const Outcome one = Pliant("evaluate --run '" + a + "' --sequence '" + sequence + "' --parts material");
   EXPECT_EQ(one.exit, 0) << one.err;
   EXPECT_THAT(one.out, HasSubstr("drift, px"));
@@ -273,7 +282,7 @@ TEST(Program, ModelCheckSaysWhatIsWrongAndExitsWithOne) {
 
   const std::string binary = Temporary("binary").string();
   EXPECT_EQ(Pliant("model convert --input_path '" + folder.string() + "' --output_path '" + binary + "'").exit, 0);
-  EXPECT_EQ(Pliant("model check --path '" + binary + "'").out, good.out);
+  EXPECT_EQ(Pliant("model check --input_path '" + binary + "'").out, good.out);
   const Outcome beside =
       Pliant("model convert --format text --input_path '" + folder.string() + "' --output_path '" + binary + "'");
   EXPECT_EQ(beside.exit, 1);

@@ -93,31 +93,36 @@ TEST_F(OpenSequenceTest, TellsWhenTheImageSizeChanges) {
   ExpectBadFrame(*Open(Request()), 4, 2, ErrorCode::kMismatch, "64x48");
 }
 
-TEST_F(OpenSequenceTest, FindsAnImageOfAnotherSizeWithoutDecodingIt) {
+TEST_F(OpenSequenceTest, FindsAnImageOfAnotherSizeOrWithoutAHead) {
   for (const char* extension : {".png", ".jpg", ".bmp"}) {
     std::filesystem::remove_all(Path("images"));
     WriteCamera();
     for (int idx = 0; idx < 4; ++idx) Write("images/00000" + std::to_string(idx) + extension, Image(idx));
-    EXPECT_TRUE(Open(Request())->CheckSizes().ok()) << extension;
+    EXPECT_TRUE(Open(Request())->CheckFiles().ok()) << extension;
     Write(std::string("images/000002") + extension, Image(2, 32, 24));
-    const Status status = Open(Request())->CheckSizes();
+    const Status status = Open(Request())->CheckFiles();
     EXPECT_EQ(status.code(), ErrorCode::kMismatch) << extension;
     EXPECT_THAT(status.message(), HasSubstr(std::string("000002") + extension + " is 32x24, but 000000"));
     SequenceRequest before = Request();
     before.end = 2;
-    EXPECT_TRUE(Open(before)->CheckSizes().ok()) << extension;
+    EXPECT_TRUE(Open(before)->CheckFiles().ok()) << extension;
     Truncate(std::string("images/000002") + extension, 0.01);
-    EXPECT_TRUE(Open(Request())->CheckSizes().ok()) << "a file without a head has no size, " << extension;
+    const Status without_head = Open(Request())->CheckFiles();
+    EXPECT_EQ(without_head.code(), ErrorCode::kUnreadable) << extension;
+    EXPECT_THAT(without_head.message(), HasSubstr(std::string("000002") + extension)) << extension;
+    EXPECT_TRUE(Open(before)->CheckFiles().ok()) << extension;
   }
 }
 
-TEST_F(OpenSequenceTest, FindsAMaskOfAnotherSizeWithoutDecodingIt) {
+TEST_F(OpenSequenceTest, FindsAMaskOfAnotherSizeOrWithoutAHead) {
   WriteNative(3);
   for (int idx = 0; idx < 3; ++idx)
     Write("masks/00000" + std::to_string(idx) + ".png", cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar::all(255)));
-  EXPECT_TRUE(Open(Request())->CheckSizes().ok());
+  EXPECT_TRUE(Open(Request())->CheckFiles().ok());
   Write("masks/000002.png", cv::Mat(8, 8, CV_8UC1, cv::Scalar::all(255)));
-  EXPECT_THAT(Open(Request())->CheckSizes().message(), HasSubstr("000002.png is 8x8, but the images are 64x48"));
+  EXPECT_THAT(Open(Request())->CheckFiles().message(), HasSubstr("000002.png is 8x8, but the images are 64x48"));
+  Truncate("masks/000002.png", 0);
+  EXPECT_THAT(Open(Request())->CheckFiles().message(), HasSubstr("000002.png is empty"));
 }
 
 TEST_F(OpenSequenceTest, TellsWhenAVideoBreaksOff) {
@@ -164,7 +169,7 @@ TEST_F(OpenSequenceTest, LeavesADamagedFrameOfAVideoOut) {
   EXPECT_THAT(std::vector<int>(read.begin(), read.begin() + 9), testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8));
   EXPECT_THAT(std::vector<int>(read.end() - 9, read.end()), testing::ElementsAre(11, 12, 13, 14, 15, 16, 17, 18, 19));
   EXPECT_EQ(checker.Check().damaged, 1);
-  EXPECT_THAT(checker.Check().wrong, testing::Contains(HasSubstr("of the video are damaged and left out")));
+  EXPECT_THAT(checker.Check().wrong, testing::Contains(HasSubstr("are damaged and left out, where points jump")));
 }
 
 // Cut without being coded again: an edit list hides the frames before the cut, which the container still counts.

@@ -101,7 +101,7 @@ void Check(const Status& status) {
 
 void ReadSequence(Sequence& sequence) {
   if (sequence.camera().width() <= 0 || sequence.camera().height() <= 0) std::abort();
-  Check(sequence.CheckSizes());
+  Check(sequence.CheckFiles());
   sequence.Photometric();
   for (int k = 0; k < kMaxFrames; ++k) {
     const auto frame = sequence.Next();

@@ -60,7 +60,7 @@ class Manual(unittest.TestCase):
     def test_there_are_commands_and_they_have_flags(self):
         self.assertIn(("track",), list(commands()))
         self.assertIn("--Init.method", flags(["track"]))
-        self.assertIn("--path", flags(["dataset", "info"]))
+        self.assertIn("--image_path", flags(["dataset", "info"]))
 
     def test_every_flag_is_in_the_man_page_of_its_command(self):
         for words in commands():
@@ -109,7 +109,9 @@ class Completion(unittest.TestCase):
         self.assertEqual(["simulate"], completed("pliant", "si"))
         self.assertIn("track", completed("pliant", ""))
         self.assertEqual(["info"], completed("pliant", "dataset", "i"))
-        self.assertIn("--input_path", completed("pliant", "dataset", "convert", "--in"))
+        self.assertIn("--image_path", completed("pliant", "dataset", "convert", "--im"))
+        self.assertIn("help", completed("pliant", "he"))
+        self.assertEqual(["dataset", "demo"], sorted(completed("pliant", "help", "d")))
 
     def test_arguments_then_groups_of_options_then_options(self):
         self.assertEqual(["--image_path"], completed("pliant", "track", "--image"))
@@ -132,6 +134,7 @@ class Completion(unittest.TestCase):
             self.assertEqual({"clip.mp4", "clips"}, set(completed("pliant", "track", "--image_path", "cl", folder=folder)))
             self.assertEqual(["clips"], completed("pliant", "track", "-o", "cl", folder=folder))
             self.assertIn("clip.mp4", completed("pliant", "dataset", "info", "cl", folder=folder))
+            self.assertEqual(["clips"], completed("pliant", "report", "cl", folder=folder))
             self.assertIn("clip.mp4", completed("pliant", "track", "--TrackFile.path=cl", folder=folder))
 
 

@@ -45,7 +45,7 @@ class CalibrateImagesTest : public testing::Test {
   }
 
   static Result<CalibrateSummary> Calibrate(const CalibrateRequest& request, const CalibrateOptions& options = {}) {
-    return CalibrateImages(request, options, [](int, int) { return true; });
+    return CalibrateImages(request, options, {});
   }
 
   // Says `part`, and leaves camera.yaml as it was.
@@ -161,10 +161,14 @@ TEST_F(CalibrateImagesTest, SaysWhereThereIsNothing) {
 
 TEST_F(CalibrateImagesTest, EndsOnRequest) {
   const CalibrateRequest request = Request(3);
-  const auto summary = CalibrateImages(request, {}, [](int done, int) { return done == 0; });
-  ASSERT_FALSE(summary.ok());
-  EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted);
-  EXPECT_FALSE(Exists(request.output_path));
+  for (const std::string_view last : {"search", "start", "fit", "check"}) {
+    const auto summary =
+        CalibrateImages(request, {}, [&](std::string_view task, int, int) { return task != last; });
+    ASSERT_FALSE(summary.ok()) << last;
+    EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted) << last;
+    EXPECT_EQ(summary.status().message(), "stopped on request; nothing was written");
+    EXPECT_FALSE(Exists(request.output_path));
+  }
 }
 
 // Pairs of images, of both cameras, of which the right one is 6 mm to the right.
@@ -219,7 +223,7 @@ class CalibratePairsTest : public CalibrateImagesTest {
   }
 
   static Result<CalibratePairsSummary> Pairs(const CalibrateRequest& request) {
-    return CalibratePairs(request, {.model = ModelChoice::kRadial}, [](int, int) { return true; });
+    return CalibratePairs(request, {.model = ModelChoice::kRadial}, {});
   }
 };
 

@@ -12,8 +12,9 @@
 
 namespace pliant {
 
-// Called when `done` of `total` frames are through `task` ("evaluate", "images"), of which a job may have several, one
-// after the other. False asks to stop: the job then fails with kInterrupted and leaves what was there before.
+// Called when `done` of `total` frames (0: not known) are through `task` ("evaluate", "images"), of which a job may
+// have several, one after the other. False asks to stop: the job then fails with kInterrupted and leaves what was there
+// before.
 using JobProgress = std::function<bool(std::string_view task, int done, int total)>;
 
 // Says it to `progress`, which may be empty. kInterrupted where that asks to stop.

@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/calibration/board.h"
@@ -77,8 +78,10 @@ inline constexpr int kFewestCalibrationViews = 3;
 inline constexpr double kLargestFocalLengthSigma = 0.05;
 
 // Fails with kInsufficient for fewer than kFewestCalibrationViews views, for views that do not determine the focal
-// length (all of one pose, or all parallel to the image), and where no model fits.
+// length (all of one pose, or all parallel to the image), and where no model fits. The tasks of `progress`, of which
+// one may take a second with hundreds of views, are "start", "fit" and "check"; what it counts are models.
 Result<CameraCalibration> CalibrateCamera(const CalibrationBoard& board, std::span<const BoardView> views, int width,
-                                          int height, ModelChoice model, int threads, Lenses lenses = Lenses::kAll);
+                                          int height, ModelChoice model, int threads, Lenses lenses = Lenses::kAll,
+                                          const JobProgress& progress = {});
 
 }  // namespace pliant

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/status.h"
 #include "pliant/calibration/board.h"
 #include "pliant/calibration/find_board.h"
@@ -37,9 +38,10 @@ inline constexpr int kFewestCalibrationPairs = 3;
 // of the same moment. A chessboard or grid of circles that a view has the other way round (its last point first) is
 // turned. Fails with kInvalidArgument for a fisheye, and kInsufficient for fewer than kFewestCalibrationPairs pairs,
 // for pairs that no rigid mount explains (their error is more than three times that of each camera alone), and where
-// the right camera is not to the right of the left one, or at its place.
+// the right camera is not to the right of the left one, or at its place. The task of `progress` is "pairs", of three
+// steps.
 Result<StereoCameras> CalibrateStereo(const CalibrationBoard& board, const Camera& left, const Camera& right,
                                       std::span<const BoardView> left_views, std::span<const BoardView> right_views,
-                                      int threads);
+                                      int threads, const JobProgress& progress = {});
 
 }  // namespace pliant

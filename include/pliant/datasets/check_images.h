@@ -82,7 +82,7 @@ class CheckedSequence final : public Sequence {
   std::optional<PhotometricCalibration> Photometric() const override { return source_.Photometric(); }
   std::optional<double> BaselineMm() const override { return source_.BaselineMm(); }
   Result<std::optional<cv::Mat>> Right() override { return source_.Right(); }
-  Status CheckSizes() const override { return source_.CheckSizes(); }
+  Status CheckFiles() const override { return source_.CheckFiles(); }
   std::optional<double> TimestampS(int frame_idx) const override { return source_.TimestampS(frame_idx); }
   std::optional<std::string> Name(int frame_idx) const override { return source_.Name(frame_idx); }
   std::vector<std::string> Warnings() const override { return source_.Warnings(); }

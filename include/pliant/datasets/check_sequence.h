@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/check_images.h"
 #include "pliant/datasets/sequence.h"
@@ -57,8 +58,9 @@ struct SequenceCheck {
   std::vector<std::string> wrong;
 };
 
-// Reads all frames; without `images` those up to the last one that is compared. Fails as Sequence::Next, Right and
-// Depth.
-Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& options = {});
+// Reads all frames; without `images` those up to the last one that is compared. The task of `progress` is "check".
+// Fails as Sequence::Next, Right and Depth, and with kInterrupted by `progress`.
+Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& options = {},
+                                    const JobProgress& progress = {});
 
 }  // namespace pliant

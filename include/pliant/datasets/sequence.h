@@ -45,9 +45,9 @@ class Sequence {
   // After a failure the sequence may be asked for the frame after it.
   virtual Result<std::optional<SequenceFrame>> Next() = 0;
 
-  // Whether the images (of pairs: both) and masks of all frames have one size each, as far as their files say it
-  // without being decoded: PNG, JPEG and BMP do. Fails with kMismatch.
-  virtual Status CheckSizes() const { return Status::Ok(); }
+  // Whether the files of the images (of pairs: both) and masks of all frames are images, and have one size each. Only
+  // files whose head does not say a size are decoded. Fails with kUnreadable and kMismatch.
+  virtual Status CheckFiles() const { return Status::Ok(); }
 
   // Truth by the frame's own index, where the sequence has it; nothing where not.
   // These do not depend on how far Next has come. Depth: CV_32FC1, z along the optical axis in mm, 0 = none; it may be

@@ -84,19 +84,17 @@ struct CalibratePairsSummary {
   StereoCameras stereo;
 };
 
-// Called as images are done: how many of how many (0: not known). True: go on.
-using CalibrateProgress = std::function<bool(int, int)>;
-
 // Fails with kNotFound and kUnreadable for images that cannot be read, kMismatch for images of different sizes,
 // kInsufficient where the board is not seen, is larger than was said (the sentence says what is seen) or the images do
-// not determine the camera, kInterrupted by `progress`, and kUnwritable. camera.yaml is written at the end only.
+// not determine the camera, kInterrupted by `progress`, and kUnwritable. camera.yaml is written at the end only. Tasks
+// of `progress`: "search" for the board in images, then those of CalibrateCamera.
 Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const CalibrateOptions& options,
-                                         const CalibrateProgress& progress);
+                                         const JobProgress& progress);
 
 // Of a request that has pairs. Writes an OpenCV stereo calibration, in millimeters, as SequenceRequest::camera_path
 // takes it. The models are perspective ones, since pairs are rectified. Fails as CalibrateImages and CalibrateStereo
 // do, and with kMismatch where the two cameras have different numbers of images.
 Result<CalibratePairsSummary> CalibratePairs(const CalibrateRequest& request, const CalibrateOptions& options,
-                                             const CalibrateProgress& progress);
+                                             const JobProgress& progress);
 
 }  // namespace pliant

@@ -6,6 +6,7 @@
 
 #include <opencv2/core/types.hpp>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/image/working_image.h"
@@ -21,7 +22,9 @@ struct SequenceStatistics {
 };
 
 // Reads runs of kStatisticsRunFrames frames, at most 30 of them, evenly spread over the sequence. Fails as the readers
-// do, and with kInsufficient where the sequence has no whole run. The result does not depend on options.threads.
-Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& request, const TrackOptions& options);
+// do, with kInsufficient where the sequence has no whole run, and with kInterrupted by `progress`, whose task is
+// "statistics". The result does not depend on options.threads.
+Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& request, const TrackOptions& options,
+                                                     const JobProgress& progress = {});
 
 }  // namespace pliant
