@@ -150,9 +150,8 @@ void JudgeTimes(const std::vector<double>& steps_s, ImageCheck* check) {
 
 void JudgeDamaged(ImageCheck* check) {
   if (check->damaged <= 0) return;
-  check->wrong.push_back(
-      ShareText(check->damaged, check->damaged + check->images, "frames") +
-      " are damaged and left out, where points jump; copy the recording again, or convert it anew");
+  check->wrong.push_back(ShareText(check->damaged, check->damaged + check->images, "frames") +
+                         " are damaged and left out, where points jump; copy the recording again, or convert it anew");
 }
 
 void JudgeMasks(const MaskSide& left, const MaskSide& taken, ImageCheck* check) {

@@ -162,8 +162,7 @@ TEST_F(CalibrateImagesTest, SaysWhereThereIsNothing) {
 TEST_F(CalibrateImagesTest, EndsOnRequest) {
   const CalibrateRequest request = Request(3);
   for (const std::string_view last : {"search", "start", "fit", "check"}) {
-    const auto summary =
-        CalibrateImages(request, {}, [&](std::string_view task, int, int) { return task != last; });
+    const auto summary = CalibrateImages(request, {}, [&](std::string_view task, int, int) { return task != last; });
     ASSERT_FALSE(summary.ok()) << last;
     EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted) << last;
     EXPECT_EQ(summary.status().message(), "stopped on request; nothing was written");
