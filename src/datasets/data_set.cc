@@ -66,6 +66,7 @@ class DataSetSequence final : public Sequence {
   Status CheckFirstImage() const;
   Status CheckMasks(const CompanionImages& masks) const;
   Status OpenMasks();
+  Status CheckFirstDepthPrior();
   Status OpenDepthPriors(const std::filesystem::path& folder);
 
   const Camera& camera() const override { return data_set_.calibration.camera; }
@@ -169,6 +170,22 @@ Status DataSetSequence::OpenDepthPriors(const fs::path& folder) {
     WarnOfMissing(
         "depth prior", KnownRange(), data_set_,
         [&](std::size_t idx) { return !DepthPriorFile(static_cast<int>(idx)).empty(); }, &data_set_.warnings);
+  return CheckFirstDepthPrior();
+}
+
+// A network that was given the wrong images, or whose output was converted wrongly, is wrong in all of them.
+Status DataSetSequence::CheckFirstDepthPrior() {
+  const FrameRange range = KnownRange();
+  for (int idx = range.start; idx < range.end; idx += range.stride) {
+    const fs::path file = DepthPriorFile(idx);
+    if (file.empty()) continue;
+    const Result<cv::Mat> prior = DepthPrior(idx);
+    if (!prior.ok()) return prior.status();
+    if (const std::string_view why = WhySaysNothing(*prior); !why.empty())
+      data_set_.warnings.push_back("the depth prior " + file.string() + " says nothing of depth: it has " +
+                                   std::string(why) + "; check what the network was given, and what was written");
+    return Status::Ok();
+  }
   return Status::Ok();
 }
 

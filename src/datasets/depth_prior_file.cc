@@ -3,8 +3,11 @@
 
 #include "datasets/depth_prior_file.h"
 
+#include <limits>
 #include <string>
 #include <utility>
+
+#include <opencv2/core.hpp>
 
 #include "datasets/depth_array.h"
 #include "datasets/image_file.h"
@@ -34,6 +37,15 @@ Result<cv::Mat> ReadDepthPrior(const std::filesystem::path& path, int width, int
   if (!values.ok()) return values;
   const Status size = CheckDepthPriorSize(values->size(), {width, height}, "the depth prior " + path.string());
   return size.ok() ? std::move(values) : Result<cv::Mat>(size);
+}
+
+std::string_view WhySaysNothing(const cv::Mat& prior) {
+  const cv::Mat known = (prior > 0.0F) & (prior < std::numeric_limits<float>::infinity());
+  if (cv::countNonZero(known) == 0) return "no positive number";
+  double low = 0;
+  double high = 0;
+  cv::minMaxLoc(prior, &low, &high, nullptr, nullptr, known);
+  return low < high ? "" : "one value everywhere";
 }
 
 }  // namespace pliant

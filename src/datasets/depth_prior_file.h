@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include <opencv2/core/mat.hpp>
 
@@ -16,5 +17,8 @@ namespace pliant {
 // NumPy, (height, width) with any axes of length 1 before or behind. Of any size, with the sides of `width` x `height`
 // (those of the images) to one another. Fails with kNotFound, kUnreadable, and kMismatch (colors, other sides).
 Result<cv::Mat> ReadDepthPrior(const std::filesystem::path& path, int width, int height);
+
+// Why a depth prior tells no two points apart: "no positive number" or "one value everywhere"; empty where it does.
+std::string_view WhySaysNothing(const cv::Mat& prior);
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 // Depth images of other programs: what is read of them, and which image they belong to.
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -13,6 +14,7 @@
 #include "datasets/depth_prior_file.h"
 #include "datasets/opened_sequence.h"
 #include "io/npy.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {
@@ -78,7 +80,7 @@ TEST_F(DepthPriorTest, BelongsToTheImageOfItsName) {
   WriteArray("prior/000003.npy", {kHeight, kWidth}, 3.0F);
   const auto sequence = Open(WithPriors());
   ASSERT_NE(sequence, nullptr);
-  ASSERT_EQ(sequence->Warnings().size(), 1U);
+  ASSERT_FALSE(sequence->Warnings().empty());
   EXPECT_THAT(sequence->Warnings().front(), HasSubstr("2 of 4 images have no depth prior, the first is 000000.png"));
   for (int idx = 0; idx < 4; ++idx) {
     const auto frame = sequence->Next();
@@ -87,6 +89,25 @@ TEST_F(DepthPriorTest, BelongsToTheImageOfItsName) {
     if (idx % 2 == 0) continue;
     EXPECT_EQ((*frame)->depth_prior.at<float>(5, 5), static_cast<float>(idx));
   }
+}
+
+TEST_F(DepthPriorTest, OneThatSaysNothingIsWarnedOf) {
+  WriteNative(2);
+  const auto warned = [&] {
+    const auto sequence = OpenSequence(WithPriors());
+    return sequence.ok() ? CommaSeparated((*sequence)->Warnings()) : sequence.status().message();
+  };
+  for (const char* name : {"prior/000000.npy", "prior/000001.npy"}) WriteArray(name, {kHeight, kWidth}, 2.0F);
+  EXPECT_THAT(warned(), HasSubstr("000000.npy says nothing of depth: it has one value everywhere; check what"));
+  for (const float none : {std::numeric_limits<float>::quiet_NaN(), 0.0F, std::numeric_limits<float>::infinity()}) {
+    WriteArray("prior/000000.npy", {kHeight, kWidth}, none);
+    EXPECT_THAT(warned(), HasSubstr("000000.npy says nothing of depth: it has no positive number")) << none;
+  }
+  cv::Mat ramp(kHeight, kWidth, CV_16UC1);
+  for (int u = 0; u < kWidth; ++u) ramp.col(u) = 100 + u;
+  std::filesystem::remove_all(Path("prior"));
+  for (const char* name : {"prior/000000.png", "prior/000001.png"}) Write(name, ramp);
+  EXPECT_EQ(warned(), "");
 }
 
 TEST_F(DepthPriorTest, BelongsByOrderWhereNoNameAgrees) {
