@@ -215,7 +215,7 @@ def _triplets(jacobian: Any, rows: int, columns: int) -> tuple[NDArray[Any], NDA
 
 def _coster(cost: Cost) -> Callable[..., tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]]:
     """What the library calls."""
-    evaluate = getattr(cost, "evaluate", None)
+    evaluate: Any = getattr(cost, "evaluate", None)
     if not callable(evaluate):
         raise TypeError(f"a cost is a {type(cost).__name__}; give an object with a method evaluate, or the name of a "
                         "registered one")
@@ -287,7 +287,7 @@ def asker(initializer: Initializer) -> Callable[[list[Any], _pliant.Camera, bool
 
 def follower(tracks: PointFollower) -> Callable[[Any, Any, Any, Any], tuple[NDArray[Any], NDArray[Any]]]:
     """What the library calls."""
-    follow = getattr(tracks, "follow", None)
+    follow: Any = getattr(tracks, "follow", None)
     if not callable(follow):
         raise TypeError(f"tracks is a {type(tracks).__name__}; give an object with a method follow, or the path of a "
                         "file (arrays are saved first: np.savez(path, tracks=..., visibility=...))")

@@ -146,7 +146,8 @@ def calibrate_stereo(image_path: StrPath, board: str, output_path: StrPath | Non
                "pairs": given.text(pairs, "pairs"), "overwrite": given.truth(overwrite, "overwrite"),
                **given.files(output=output_path, right=right_path)}
     found = _pliant.calibrate_stereo(request, given.options(options), given.function(on_progress, "on_progress"))
-    return StereoCalibration(**{**found, "left": Calibration(**found["left"]), "right": Calibration(**found["right"])})
+    found.update({side: Calibration(**found[side]) for side in ("left", "right")})
+    return StereoCalibration(**found)
 
 
 def simulate(output_path: StrPath, options: OptionValues | None = None, *, realism: str = "clean",
@@ -205,8 +206,9 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
     Raises:
         pliant.Error: the images cannot be read, or there is no map; the run folder has what there was until then.
     """
+    images: Any = input
     if isinstance(input, Sequence):
-        input, of_sequence = input.path, input.request
+        images, of_sequence = input.path, input.request
         if (camera, mask_path, start, end, stride) != (None, None, 0, None, 1):
             raise ValueError("the input is a pliant.Sequence, which has its camera, masks and frames; open it with "
                              "those that are meant")
@@ -214,28 +216,28 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
         of_sequence = sequence_request(mask_path, start, end, stride)
     request: dict[str, Any] = {**of_sequence, "resume": given.truth(resume, "resume")}
     output = given.path(output_path, "output_path")
-    options = given.options(options)
+    values = given.options(options)
     tracks = registered_tracks(tracks)
     if isinstance(tracks, (str, os.PathLike)):
-        options, tracks = {**(options or {}), "TrackFile.path": os.fspath(tracks)}, None
+        values, tracks = {**(values or {}), "TrackFile.path": os.fspath(tracks)}, None
     if depth_prior is not None:
-        options = {**(options or {}), "DepthPrior.path": given.path(depth_prior, "depth_prior")}
-    options, extensions = chosen(options, initializer, tracks, cost)
+        values = {**(values or {}), "DepthPrior.path": given.path(depth_prior, "depth_prior")}
+    values, extensions = chosen(values, initializer, tracks, cost)
     request.update(extensions)
     preset, on_frame = given.text(preset, "preset"), given.function(on_frame, "on_frame")
-    if isinstance(input, (str, os.PathLike)):
+    if isinstance(images, (str, os.PathLike)):
         if timestamps is not None:
             raise ValueError("timestamps are for images that are given; those of a path come from its times.txt")
-        request = {"image_path": os.fspath(input), "camera_path": given.camera_path(camera), **request}
-        _pliant.track_path(request, output, options, preset, on_frame)
+        request = {"image_path": os.fspath(images), "camera_path": given.camera_path(camera), **request}
+        _pliant.track_path(request, output, values, preset, on_frame)
     else:
         if resume:
             raise ValueError("images that are given do not come again, so such a run cannot be resumed; give a path")
         if not isinstance(camera, _pliant.Camera):
             raise ValueError("images need their camera; give a pliant.Camera (pliant.read_camera reads a file)")
-        request.update(images=input, camera=camera,
+        request.update(images=images, camera=camera,
                        timestamps=[] if timestamps is None else given.numbers(timestamps, "timestamps"))
-        _pliant.track_images(request, output, options, preset, on_frame)
+        _pliant.track_images(request, output, values, preset, on_frame)
     return Run(output)
 
 
@@ -390,8 +392,9 @@ def compare(runs: Any, sequence: StrPath | Iterable[StrPath] | None = None, opti
             runs.
     """
     sequences = [sequence] if isinstance(sequence, (str, os.PathLike)) else list(sequence or [])
-    request = {"run_paths": _several(runs), "sequence_paths": [given.path(path, "sequence") for path in sequences],
-               **given.files(camera=camera, output=output_path, figure=figure)}
+    request: dict[str, Any] = {"run_paths": _several(runs),
+                               "sequence_paths": [given.path(path, "sequence") for path in sequences],
+                               **given.files(camera=camera, output=output_path, figure=figure)}
     return json.loads(_pliant.compare(request, given.options(options), given.function(on_progress, "on_progress")))
 
 

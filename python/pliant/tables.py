@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import operator
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
@@ -42,7 +42,7 @@ class _Table:
             if not -len(self) <= idx < len(self):
                 raise IndexError(f"there is no row {idx}; there are {len(self)}")
             rows = slice(idx % len(self), idx % len(self) + 1)
-        columns = (getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
+        columns = (getattr(self, field.name) for field in fields(cast(Any, self)))
         return type(self)(*({name: column[rows] for name, column in columns_.items()} if isinstance(columns_, dict)
                             else columns_[rows] for columns_ in columns))
 
