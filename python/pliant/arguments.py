@@ -68,6 +68,11 @@ def text(value: Any, name: str) -> str:
     return value
 
 
+def optional_text(value: Any, name: str) -> str:
+    """"" for None."""
+    return "" if value is None else text(value, name)
+
+
 def path(value: Any, name: str) -> str:
     if not isinstance(value, (str, os.PathLike)):
         raise _wrong(value, name, "a path")
@@ -103,6 +108,15 @@ def camera_path(value: Any) -> str:
 def options(values: Any) -> Any:
     """A dictionary of any mapping; what is none is refused where it is read."""
     return dict(values) if isinstance(values, Mapping) else values
+
+
+def options_with(values: Any, named: dict[str, str]) -> Any:
+    """Options with those that arguments name; "" names none. What is no dictionary is refused where it is read."""
+    named = {name: value for name, value in named.items() if value}
+    values = options(values)
+    if not named or not (values is None or isinstance(values, dict)):
+        return values
+    return {**(values or {}), **named}
 
 
 def files(**paths: Any) -> dict[str, str]:

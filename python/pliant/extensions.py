@@ -289,8 +289,8 @@ def follower(tracks: PointFollower) -> Callable[[Any, Any, Any, Any], tuple[NDAr
     """What the library calls."""
     follow: Any = getattr(tracks, "follow", None)
     if not callable(follow):
-        raise TypeError(f"tracks is a {type(tracks).__name__}; give an object with a method follow, or the path of a "
-                        "file (arrays are saved first: np.savez(path, tracks=..., visibility=...))")
+        raise TypeError(f"tracks is a {type(tracks).__name__}; give an object with a method follow, the path of a "
+                        "file, or arrays as a pair (tracks, visibility)")
 
     def call(previous: Any, image: Any, pixel: Any, predicted: Any) -> tuple[NDArray[Any], NDArray[Any]]:
         answer = follow(TrackedImage(*previous), TrackedImage(*image), pixel, predicted)

@@ -24,6 +24,7 @@ from . import arguments as given
 from .extensions import Cost, Initializer, PointFollower, chosen, registered_tracks
 from .run import Run
 from .sequence import Sequence, sequence_request
+from .track_arrays import TrackArrays, are_arrays, are_recorded, file_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -168,8 +169,8 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
           options: OptionValues | None = None, *, camera: StrPath | _pliant.Camera | None = None,
           timestamps: Several[float] | None = None, preset: str = "default", mask_path: StrPath | None = None,
           start: int = 0, end: int | None = None, stride: int = 1, initializer: Initializer | str | None = None,
-          tracks: PointFollower | StrPath | None = None, cost: Cost | str | None = None,
-          depth_prior: StrPath | None = None, resume: bool = False,
+          tracks: PointFollower | StrPath | TrackArrays | None = None, tracks_pixel_origin: str | None = None,
+          cost: Cost | str | None = None, depth_prior: StrPath | None = None, resume: bool = False,
           on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
     """Camera pose and the motion of every point.
 
@@ -190,7 +191,11 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
         initializer: makes first maps in place of Init.method: a function (pliant.extensions.Initializer), or the name
             of one that is registered (pliant.register_initializer), which Init.method takes, too.
         tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), the name
-            of what makes one (pliant.register_tracks), or the file of another program's tracks (docs/tracks.md).
+            of what makes one (pliant.register_tracks), or another program's tracks (docs/tracks.md): their file, or
+            arrays, as a pair (tracks, visibility) or by these names. tracks is (T, N, 2), x before y, in pixels of
+            the images, and visibility (T, N) bool; entry t of T is frame t of the images.
+        tracks_pixel_origin: what (0, 0) is in tracks of a file or of arrays: the center of the first pixel, or its
+            upper left corner; None: as the option TrackFile.pixel_origin says (center).
         cost: a term that is added to the joint problem of every frame: an object (pliant.extensions.Cost), or the name
             of one that is registered (pliant.register_cost).
         depth_prior: folder of another program's depth images, a file an image (docs/your_own_video.md).
@@ -216,20 +221,12 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
         of_sequence = sequence_request(mask_path, start, end, stride)
     request: dict[str, Any] = {**of_sequence, "resume": given.truth(resume, "resume")}
     output = given.path(output_path, "output_path")
-    values = given.options(options)
-    tracks = registered_tracks(tracks)
-    if isinstance(tracks, (str, os.PathLike)):
-        values, tracks = {**(values or {}), "TrackFile.path": os.fspath(tracks)}, None
-    if depth_prior is not None:
-        values = {**(values or {}), "DepthPrior.path": given.path(depth_prior, "depth_prior")}
-    values, extensions = chosen(values, initializer, tracks, cost)
-    request.update(extensions)
     preset, on_frame = given.text(preset, "preset"), given.function(on_frame, "on_frame")
-    if isinstance(images, (str, os.PathLike)):
+    is_path = isinstance(images, (str, os.PathLike))
+    if is_path:
         if timestamps is not None:
             raise ValueError("timestamps are for images that are given; those of a path come from its times.txt")
-        request = {"image_path": os.fspath(images), "camera_path": given.camera_path(camera), **request}
-        _pliant.track_path(request, output, values, preset, on_frame)
+        request.update(image_path=os.fspath(images), camera_path=given.camera_path(camera))
     else:
         if resume:
             raise ValueError("images that are given do not come again, so such a run cannot be resumed; give a path")
@@ -237,7 +234,19 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
             raise ValueError("images need their camera; give a pliant.Camera (pliant.read_camera reads a file)")
         request.update(images=images, camera=camera,
                        timestamps=[] if timestamps is None else given.numbers(timestamps, "timestamps"))
-        _pliant.track_images(request, output, values, preset, on_frame)
+    tracks = registered_tracks(tracks)
+    if resume and are_arrays(tracks):
+        raise ValueError("a run with arrays of tracks cannot be resumed; save them with np.savez(path, tracks=tracks, "
+                         "visibility=visibility), and give the path")
+    with file_of(tracks if are_recorded(tracks) else None) as track_file:
+        values = given.options_with(options, {
+            "TrackFile.path": track_file,
+            "TrackFile.pixel_origin": given.optional_text(tracks_pixel_origin, "tracks_pixel_origin"),
+            "DepthPrior.path": given.optional_path(depth_prior, "depth_prior")})
+        values, extensions = chosen(values, initializer, None if track_file else tracks, cost)
+        request.update(extensions)
+        track_input = _pliant.track_path if is_path else _pliant.track_images
+        track_input(request, output, values, preset, on_frame)
     return Run(output)
 
 
@@ -311,8 +320,9 @@ def surface(run: RunOrPath, output_path: StrPath, options: OptionValues | None =
 
 def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: OptionValues | None = None, *,
              camera: StrPath | None = None, other_runs: Any = (), sfm_path: StrPath | None = None,
-             surface_path: StrPath | None = None, tracks: StrPath | None = None, tracks_pixel_origin: str = "center",
-             output_path: StrPath | None = None, on_progress: JobProgress | None = None) -> dict[str, Any]:
+             surface_path: StrPath | None = None, tracks: StrPath | TrackArrays | None = None,
+             tracks_pixel_origin: str = "center", output_path: StrPath | None = None,
+             on_progress: JobProgress | None = None) -> dict[str, Any]:
     """How far a run is from the truth of its sequence, from other runs, or from structure from motion.
 
     Args:
@@ -323,8 +333,9 @@ def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: Op
         other_runs: runs of the same recording.
         sfm_path: points of structure from motion, a CSV or a COLMAP model.
         surface_path: a surface folder of the run, whose error is told too.
-        tracks: file of another program's point tracks (docs/tracks.md), compared with the truth of the sequence.
-        tracks_pixel_origin: what (0, 0) is in that file: the center of the first pixel, or its upper left corner.
+        tracks: another program's point tracks (docs/tracks.md), compared with the truth of the sequence: their file, or
+            arrays as of pliant.track.
+        tracks_pixel_origin: what (0, 0) is in them: the center of the first pixel, or its upper left corner.
         output_path: folder for evaluation.json and evaluation.csv; None: they are not written.
         on_progress: called with what is done ("evaluate", for example), how much of it is done, and how much there is.
 
@@ -340,9 +351,9 @@ def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: Op
         raise ValueError("there is nothing to compare the run with; give sequence, other_runs or sfm_path")
     request = {"run_path": "" if run is None else _run_path(run), "other_runs": others,
                "tracks_pixel_origin": given.text(tracks_pixel_origin, "tracks_pixel_origin"),
-               **given.files(sequence=sequence, camera=camera, sfm=sfm_path, surface=surface_path, tracks=tracks,
-                             output=output_path)}
-    return json.loads(_pliant.evaluate(request, given.options(options), given.function(on_progress, "on_progress")))
+               **given.files(sequence=sequence, camera=camera, sfm=sfm_path, surface=surface_path, output=output_path)}
+    with file_of(tracks) as request["tracks_path"]:
+        return json.loads(_pliant.evaluate(request, given.options(options), given.function(on_progress, "on_progress")))
 
 
 def evaluate_stir(tracked: StrPath, start: StrPath, end: StrPath, *,

@@ -4,13 +4,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _pliant
 from . import arguments as given
 from .extensions import Cost, Initializer, PointFollower, chosen, registered_tracks
+from .track_arrays import are_recorded
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,16 +35,16 @@ class Tracker(_pliant.Tracker):
                 smoothing of the images that points are tracked in are chosen, as pliant.track does; without them the
                 images are taken as they are, or as Image.scale and Image.smoothing_px say where Image.working is
                 "fixed".
-            initializer, tracks, cost: as of pliant.track, but for files of tracks. They are called in process() and
-                finish(), in the thread that calls these. An exception in them is raised there, and the tracker is
-                finished: it takes no more images.
+            initializer, tracks, cost: as of pliant.track, but for tracks of a file or of arrays. They are called in
+                process() and finish(), in the thread that calls these. An exception in them is raised there, and the
+                tracker is finished: it takes no more images.
 
         Raises:
             ValueError: options that need more than images (a start from depth, for example).
         """
         tracks = registered_tracks(tracks)
-        if isinstance(tracks, (str, os.PathLike)):
-            raise ValueError("a file of tracks belongs to the frames of a sequence; give it to pliant.track")
+        if are_recorded(tracks):
+            raise ValueError("tracks of a file or of arrays are of a sequence's frames; give them to pliant.track")
         if not isinstance(examples, Iterable):
             raise TypeError(f"examples is a {type(examples).__name__}; give a list of images")
         chosen_options, extensions = chosen(given.options(options), initializer, tracks, cost)

@@ -195,7 +195,7 @@ class Tracks(TestCase):
                 pliant.track(SEQUENCE, self.folder / "run", FIXED, end=FRAMES, tracks=Wrong(answer))
         with self.assertRaisesRegex(ValueError, "TrackFile.path names a file of others"):
             pliant.track(SEQUENCE, self.folder / "both", {"TrackFile.path": "a.npz"}, tracks=Wrong(None))
-        with self.assertRaisesRegex(TypeError, "arrays are saved first"):
+        with self.assertRaisesRegex(TypeError, "arrays as a pair"):
             pliant.track(SEQUENCE, self.folder / "arrays", tracks=np.zeros((FRAMES, 5, 2)))
 
 
