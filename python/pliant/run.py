@@ -54,21 +54,26 @@ class Run:
 
     @cached_property
     def _map(self) -> tuple[_pliant.Camera | None, dict[int, str], Points]:
-        return _pliant.read_map(os.fspath(self.folder))
+        try:
+            return _pliant.read_map(os.fspath(self.folder))
+        except _pliant.Error as error:
+            if error.code != "not_found" or self.summary.get("input"):
+                raise
+            return None, {}, Points(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3), np.uint8))
 
     @property
     def camera(self) -> _pliant.Camera | None:
-        """The camera of the images."""
+        """The camera of the images; None in another program's run, which does not say which images it is of."""
         return self._map[0]
 
     @property
     def names(self) -> dict[int, str]:
-        """The names of the images, by the frame's number."""
+        """The names of the images, by the frame's number; none where they are not known, as the camera."""
         return self._map[1]
 
     @property
     def points(self) -> Points:
-        """The undeformed map; empty where a killed run has none."""
+        """The undeformed map; empty where a killed run, or another program's, has none."""
         return self._map[2]
 
     def frame(self, frame_idx: int) -> Observations:

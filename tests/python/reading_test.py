@@ -146,6 +146,20 @@ class Reading(TestCase):
         np.testing.assert_array_equal(run.poses.world_from_cam[0, :, 3], [1, 2, 3, 1])
         self.assertEqual(run.poses.frame_idx[0], -1)
         self.assertTrue(np.isnan(run.observations.ssim[0]))
+        self.assertEqual((run.camera, run.names, len(run.points)), (None, {}, 0))
+        self.assertEqual({name: values.dtype for name, values in run.points.columns().items()},
+                         {name: values.dtype for name, values in self.result.points.columns().items()})
+
+    def test_a_run_whose_images_are_gone_has_no_camera(self):
+        killed = self.folder / "killed"
+        shutil.copytree(RUN, killed)
+        shutil.rmtree(killed / "sparse")
+        summary = {**json.loads((killed / "run.json").read_text()), "input": str(self.folder / "gone")}
+        (killed / "run.json").write_text(json.dumps(summary))
+        with self.assertRaises(pliant.Error) as caught:
+            pliant.open_run(killed).camera
+        self.assertEqual(caught.exception.code, "not_found")
+        self.assertIn("gone", sentence(self, caught.exception))
 
     def test_a_garbled_row_is_an_error_with_file_and_line(self):
         other = self.folder / "other"
