@@ -24,6 +24,7 @@ from . import arguments as given
 from .extensions import Cost, Initializer, PointFollower, chosen, registered_tracks
 from .run import Run
 from .sequence import Sequence, sequence_request
+from .timed_images import timed
 from .track_arrays import TrackArrays, are_arrays, are_recorded, file_of
 
 if TYPE_CHECKING:
@@ -184,7 +185,8 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
         output_path: run folder, made if need be.
         options: such as {"Init.method": "window", "Growth.grow": False, "General.seed": 3}.
         camera: of a path the calibration file (None: the one that belongs to the images), of images a pliant.Camera.
-        timestamps: of a list of images, seconds, one an image; None: by the camera's fps, 30 where it has none.
+        timestamps: of images that are given, seconds, one an image, a list or an array also where the images come one
+            by one; None: by the camera's fps, 30 where it has none.
         preset: the defaults of the options, default or paper.
         mask_path: folder of masks, or one image for all frames; 0: ignore this pixel.
         start, end, stride: the first frame, one past the last one (None: to the end), and every which frame.
@@ -232,8 +234,8 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
             raise ValueError("images that are given do not come again, so such a run cannot be resumed; give a path")
         if not isinstance(camera, _pliant.Camera):
             raise ValueError("images need their camera; give a pliant.Camera (pliant.read_camera reads a file)")
-        request.update(images=images, camera=camera,
-                       timestamps=[] if timestamps is None else given.numbers(timestamps, "timestamps"))
+        times = [] if timestamps is None else given.numbers(timestamps, "timestamps")
+        request.update(images=timed(images, times), camera=camera, timestamps=times)
     tracks = registered_tracks(tracks)
     if resume and are_arrays(tracks):
         raise ValueError("a run with arrays of tracks cannot be resumed; save them with np.savez(path, tracks=tracks, "

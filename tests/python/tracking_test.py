@@ -34,6 +34,39 @@ class Images(TestCase):
         iterated = pliant.track((image for image in self.images), self.folder / "iterated", options, camera=self.camera)
         np.testing.assert_array_equal(iterated.observations.position, folder.observations.position)
 
+    def test_images_that_come_one_by_one_may_have_times(self):
+        asked, buffer = [], np.empty_like(self.images[0])
+        times = 10 + np.cumsum(np.linspace(0.03, 0.06, COUNT))
+
+        def camera():
+            for idx, image in enumerate(self.images):
+                asked.append(idx)
+                buffer[:] = image  # the same memory again
+                yield buffer
+
+        listed = pliant.track(self.images, self.folder / "list", FIXED, camera=self.camera, timestamps=times)
+        iterated = pliant.track(camera(), self.folder / "iterated", FIXED, camera=self.camera, timestamps=times)
+        self.same_files(iterated, listed)
+        np.testing.assert_allclose(iterated.frames.timestamp, times, atol=1e-6)
+        self.assertEqual(asked, list(range(COUNT)))
+
+    def test_images_that_come_one_by_one_are_as_many_as_their_times(self):
+        reported = []
+        options = {**FIXED, "General.threads": 1, "General.max_frames_back": 0, "Image.interlaced": "off"}
+        for count, tracked, words in (
+                (COUNT + 1, COUNT, f"there are {COUNT + 1} timestamps for {COUNT} images; each image needs one"),
+                (COUNT - 1, COUNT - 2, f"there are {COUNT - 1} timestamps, and more images; each image needs one")):
+            with self.assertRaises(ValueError) as caught:
+                pliant.track((image for image in self.images), self.folder / "run", options, camera=self.camera,
+                             timestamps=np.arange(count) / 30,
+                             on_frame=lambda report: reported.append(report.frame_idx))
+            self.assertEqual(sentence(self, caught.exception), words)
+            self.assertEqual(reported, list(range(tracked)), "the images before are tracked")
+            reported.clear()
+        run = pliant.track((image for image in self.images), self.folder / "run", FIXED, camera=self.camera, end=20,
+                           timestamps=np.arange(40) / 30)  # a part, whose images have their times
+        self.assertEqual(len(run.frames), 20)
+
     def test_times_grow(self):
         for timestamps in ([0.1] * COUNT, [np.nan] + self.timestamps[1:]):
             with self.assertRaisesRegex(ValueError, "the timestamps are not finite, or not growing, at"):
@@ -161,6 +194,8 @@ class Images(TestCase):
         with self.assertRaises(pliant.Error) as caught:
             pliant.track(self.images, self.folder / "run", camera=self.camera, timestamps=[0.0, 1.0])
         self.assertIn("there are 2 timestamps for 25 images", sentence(self, caught.exception))
+        with self.assertRaisesRegex(TypeError, "timestamps is a generator; give a list of numbers"):
+            pliant.track(self.images, self.folder / "run", camera=self.camera, timestamps=(t for t in self.timestamps))
 
     def test_images_that_come_one_by_one_may_have_tracks_of_a_file(self):
         tracks = self.folder / "tracks.npz"
