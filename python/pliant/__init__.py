@@ -22,13 +22,14 @@ from .jobs import (Calibration, StereoCalibration, calibrate, calibrate_stereo, 
 from .options import Options, options
 from .run import Run, open_run
 from .sequence import Sequence, SequenceFrame, open_sequence
+from .system_arrays import convert_arrays
 from .tables import Frames, Observations, Points, Poses
 from .tracker import Tracker
 
 __all__ = [
     "Calibration", "Camera", "Error", "FirstMap", "FrameReport", "Frames", "NewReference", "Observations", "Options",
     "Points", "Poses", "Run", "Sequence", "SequenceFrame", "StereoCalibration", "Tracker", "Wait", "__version__",
-    "calibrate", "calibrate_stereo", "compare", "evaluate", "evaluate_stir", "export", "extensions", "import_result",
+    "calibrate", "calibrate_stereo", "compare", "convert_arrays", "evaluate", "evaluate_stir", "export", "extensions", "import_result",
     "join", "kernels", "open_run", "open_sequence", "options", "read_camera", "refine", "register_cost",
     "register_initializer", "register_tracks", "report", "simulate", "surface", "track",
 ]

@@ -17,7 +17,7 @@ import sys
 from support import ROUND_OFF, SKIPPED, experiment_modules, main
 
 experiment_modules("benchmarks")
-for module in ("numpy", "cv2"):
+for module in ("numpy", "cv2", "pliant"):
     if importlib.util.find_spec(module) is None:
         print(f"skipped: Python has no {module}")
         sys.exit(SKIPPED)
@@ -28,6 +28,7 @@ import numpy as np
 import benchmark_miniatures as miniatures
 import import_arrays
 from benchmark_miniatures import FRAMES, HEIGHT, WIDTH
+from pliant import system_arrays
 
 PLIANT = os.path.abspath(sys.argv[2])
 UNIT_MM = 40  # of the systems' worlds
@@ -56,7 +57,7 @@ def resized_depths(scene):
 
 
 def tum(pose):
-    return [*pose[:3, 3], *import_arrays.quaternion(pose)]
+    return [*pose[:3, 3], *system_arrays.quaternion(pose)]
 
 
 def run(*arguments):
@@ -210,15 +211,15 @@ def orb_slam3_path(folder):
 
 def arrays_pixels(_folder):
     """Pixels of resized and cut images, of a size that is no multiple of 8."""
-    assert import_arrays.resized((1350, 1080)) == (495, 396)
-    rows, columns, u, v = import_arrays.grid_of((392, 488), (1350, 1080), 8)
+    assert system_arrays.resized((1350, 1080)) == (495, 396)
+    rows, columns, u, v = system_arrays.grid_of((392, 488), (1350, 1080), 8)
     assert columns.max() < 488 and rows.max() < 392 and (columns[0], rows[0]) == (4, 4)
     assert abs(u[0] - (4.5 * 1350 / 495 - 0.5)) < ROUND_OFF and abs(v[0] - (4.5 * 1080 / 396 - 0.5)) < ROUND_OFF
     for q in ([0, 0, 0, 1], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0.5, -0.5, 0.5, 0.5], [-0.1, 0.7, 0.1, -0.7]):
         q = np.array(q) / np.linalg.norm(q)
-        again = import_arrays.quaternion(import_arrays.matrices([[1, 2, 3, *q]])[0])
+        again = system_arrays.quaternion(system_arrays.matrices([[1, 2, 3, *q]])[0])
         assert np.allclose(again, q) or np.allclose(again, -q), (q, again)
-        assert np.allclose(import_arrays.matrices([[1, 2, 3, *q]])[0], miniatures.matrix([1, 2, 3, *q])), q
+        assert np.allclose(system_arrays.matrices([[1, 2, 3, *q]])[0], miniatures.matrix([1, 2, 3, *q])), q
 
 
 def arrays_times(folder):
@@ -336,12 +337,14 @@ def arrays_unwritable(folder):
 def arrays_usage(folder):
     """Wrong usage ends with the exit code 2, and with a line that says which argument is wrong."""
     file = saved(folder / "m.npz", good_megasam())
-    for flag, values in (("--fps", ("0", "-5", "nan", "inf", "fast")), ("--start", ("-4", "1.5", "first")),
-                         ("--stride", ("0", "-1")), ("--step", ("0",)), ("--size", ("160", "0x120", "axb"))):
-        for value in values:
+    for flag, wrong, no_numbers in (("--fps", ("0", "-5", "nan", "inf"), ("fast",)), ("--start", ("-4",), ("1.5", "first")),
+                                    ("--stride", ("0", "-1"), ()), ("--step", ("0",), ()),
+                                    ("--size", ("0x120",), ("160", "axb"))):
+        for value in wrong + no_numbers:
             given = {"--size": SIZE[1], "--output_path": folder / "result", flag: value}
             code, _, complaint = run("megasam", file, *(f"{name}={text}" for name, text in given.items()))
-            assert code == 2 and f"argument {flag}: '{value}' is not " in complaint.splitlines()[-1], complaint
+            words = f"error: {flag[2:]}" if value in wrong else f"argument {flag}: "
+            assert code == 2 and words in complaint.splitlines()[-1], complaint
     assert not (folder / "result").exists()
 
 

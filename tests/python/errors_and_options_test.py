@@ -91,6 +91,13 @@ class Arguments(TestCase):
     def test_of_the_other_jobs(self):
         out, rays = self.folder / "out", np.tile([0.0, 0.0, 1.0], (9, 1))
         self.refused("format is a NoneType; give text", pliant.export, RUN, out, None)
+        self.refused("system is 'orb'; give droid", pliant.convert_arrays, "a.npz", out, "orb", (640, 480))
+        for name, value in (("size", (640,)), ("size", (640, 1)), ("size", "640x480"), ("start", -1), ("stride", 0),
+                            ("step_px", 0.5), ("fps", 0), ("fps", "fast"), ("times", 3), ("path", 3)):
+            arguments = {"size": (640, 480), name: value}
+            self.refused(f"{name} is ", pliant.convert_arrays, "a.npz", out, "megasam", **arguments)
+        self.refused("leave out start and stride", pliant.convert_arrays, "a.npz", out, "tapip3d", (640, 480), stride=2,
+                     tracks_path="b.npz")
         self.refused("board is a NoneType; give text", pliant.calibrate, SEQUENCE, None, out)
         self.refused("frames is a str; give a list of whole numbers", pliant.surface, RUN, out, frames="12")
         self.refused("frames is a float; give a whole number", pliant.surface, RUN, out, frames=[1.9])

@@ -167,6 +167,28 @@ class Jobs(TestCase):
         with self.assertRaisesRegex(ValueError, "format"):
             pliant.import_result(path, self.folder / "none", SEQUENCE, "no_such")
 
+    def test_arrays_of_another_system_become_a_run(self):
+        sequence, frames = pliant.open_sequence(SEQUENCE), [0, 20, 40]  # every 20th frame was given to it
+        poses = np.array([sequence.world_from_cam(frame) for frame in frames])
+        focal, _, center_u, center_v = np.array(sequence.camera.params)[[0, 1, -2, -1]] * 512 / 640
+        np.savez(self.folder / "scene_droid.npz", cam_c2w=poses, depths=np.full((3, 384, 512), 50, np.float32),
+                 intrinsic=[[focal, 0, center_u], [0, focal, center_v], [0, 0, 1]])
+        written = pliant.convert_arrays(self.folder / "scene_droid.npz", self.folder / "result", "megasam", (640, 480),
+                                        stride=20, step_px=64)
+        self.assertEqual(written, {"poses": 3, "left_out": 0, "points": 3 * 48, "frames": 3})
+        run = pliant.import_result(self.folder / "result", self.folder / "run", SEQUENCE, "result")
+        self.assertEqual(list(run.poses.frame_idx), frames)
+        np.testing.assert_allclose(run.poses.world_from_cam, poses, atol=1e-4)
+        seen = run.frame(20)
+        in_cam = (run.poses.cam_from_world[1] @ np.column_stack([seen.position, np.ones(len(seen))]).T)[:3].T
+        np.testing.assert_allclose(in_cam[:, 2], 50, atol=1e-3)
+        # Its principal point is half a pixel off after resizing.
+        np.testing.assert_allclose(sequence.camera.project(in_cam), seen.pixel, atol=0.2)
+        with self.assertRaises(pliant.Error) as caught:
+            pliant.convert_arrays(self.folder / "none.npz", self.folder / "x", "megasam", (640, 480))
+        self.assertEqual(caught.exception.code, "not_found")
+        self.assertIn("none.npz", sentence(self, caught.exception))
+
     def test_tracks_of_a_file_are_scored(self):
         pliant.export(RUN, self.folder / "tracks", "tracks_npz", sequence=SEQUENCE)
         file = next((self.folder / "tracks").glob("*.npz"))
