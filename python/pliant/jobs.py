@@ -21,11 +21,11 @@ from typing import TYPE_CHECKING, Any, Union
 
 from . import _pliant
 from . import arguments as given
+from .counted_images import counted
 from .extensions import Cost, Initializer, PointFollower, chosen, registered_tracks
 from .run import Run
 from .sequence import Sequence, sequence_request
-from .timed_images import timed
-from .track_arrays import TrackArrays, are_arrays, are_recorded, file_of
+from .track_arrays import TrackArrays, are_arrays, are_recorded, file_of, frames_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -224,6 +224,7 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
     request: dict[str, Any] = {**of_sequence, "resume": given.truth(resume, "resume")}
     output = given.path(output_path, "output_path")
     preset, on_frame = given.text(preset, "preset"), given.function(on_frame, "on_frame")
+    tracks = registered_tracks(tracks)
     is_path = isinstance(images, (str, os.PathLike))
     if is_path:
         if timestamps is not None:
@@ -235,8 +236,9 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
         if not isinstance(camera, _pliant.Camera):
             raise ValueError("images need their camera; give a pliant.Camera (pliant.read_camera reads a file)")
         times = [] if timestamps is None else given.numbers(timestamps, "timestamps")
-        request.update(images=timed(images, times), camera=camera, timestamps=times)
-    tracks = registered_tracks(tracks)
+        images = counted(images, len(times), "timestamps")
+        images = counted(images, frames_of(tracks), "frames of tracks")
+        request.update(images=images, camera=camera, timestamps=times)
     if resume and are_arrays(tracks):
         raise ValueError("a run with arrays of tracks cannot be resumed; save them with np.savez(path, tracks=tracks, "
                          "visibility=visibility), and give the path")

@@ -53,6 +53,14 @@ def _array(value: Any, name: str) -> Any:
     return array
 
 
+def frames_of(tracks: Any) -> int:
+    """How many frames arrays have; 0 of anything else, and of arrays of another shape."""
+    if not are_arrays(tracks):
+        return 0
+    shape = _array(_named(tracks)["tracks"], "tracks").shape
+    return int(shape[-3]) if len(shape) > 2 else 0
+
+
 @contextmanager
 def file_of(tracks: Any) -> Iterator[str]:
     """The path of a file of tracks, also of arrays: theirs is there as long as the block. "" for None."""

@@ -8,7 +8,7 @@ from unittest import mock
 import numpy as np
 
 import pliant
-from support import RUN, SEQUENCE, TestCase, sentence
+from support import RUN, SEQUENCE, TestCase, images, sentence
 
 FRAMES = 30
 OPTIONS = {"General.timings": "none"}
@@ -49,6 +49,18 @@ class Arrays(TestCase):
         self.same(self.track("batch", [self.pair[0][None], self.pair[1][None]]), plain)  # as CoTracker gives them
         self.same(self.track("corner", (np.float64(self.pair[0]) + 0.5, self.pair[1]), tracks_pixel_origin="corner"),
                   plain)
+
+    def test_images_that_come_one_by_one_are_as_many_as_their_frames(self):
+        camera, frames = pliant.read_camera(SEQUENCE / "camera.yaml"), images(FRAMES)
+        tracks, seen = (array[:FRAMES] for array in self.pair)
+        listed, iterated = (pliant.track(given, self.folder / name, OPTIONS, camera=camera, tracks=(tracks, seen))
+                            for name, given in (("list", frames), ("iterated", (image for image in frames))))
+        self.same(iterated, listed)
+        turned = np.ascontiguousarray(tracks.transpose(1, 0, 2)), np.ascontiguousarray(seen.T)
+        with self.assertRaises(ValueError) as caught:
+            pliant.track((image for image in frames), self.folder / "turned", OPTIONS, camera=camera, tracks=turned)
+        self.assertEqual(sentence(self, caught.exception),
+                         f"there are {tracks.shape[1]} frames of tracks for {FRAMES} images; each image needs one")
 
     def test_they_are_scored_as_their_file_is(self):
         file = pliant.evaluate(None, SEQUENCE, tracks=self.folder / "exported" / "tracks.npz")["tracks"]
