@@ -250,6 +250,8 @@ Status CommandLine::ApplyFlags(OptionTable& options) const {
     if (options.Find(name) == nullptr) {
       if (std::string sentence = options.RenamedSentence(name); !sentence.empty())
         return {ErrorCode::kInvalidArgument, std::move(sentence)};
+      if (const auto renamed = former_names_.find(name); renamed != former_names_.end())
+        return {ErrorCode::kInvalidArgument, "--" + name + " is now called --" + renamed->second};
       return {ErrorCode::kInvalidArgument, "there is no option --" + name + Hint(name, options)};
     }
     if (!given.insert(name).second)

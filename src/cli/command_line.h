@@ -13,10 +13,12 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pliant/base/options.h"
@@ -79,6 +81,9 @@ class CommandLine {
     });
   }
 
+  // An argument that had another name: whoever gives that one is told.
+  void Renamed(std::string former, std::string name) { former_names_[std::move(former)] = std::move(name); }
+
   // A short name of an option: as if `--Group.option VALUE` were given last.
   void AddAlias(std::string name, std::string option, const std::string& placeholder, std::string why);
 
@@ -129,6 +134,7 @@ class CommandLine {
 
   Manual manual_;
   std::vector<Argument> arguments_;
+  std::map<std::string, std::string> former_names_;
   std::vector<std::string> extras_;  // the options' flags and their values: what CLI11 did not know, and aliases
   std::string config_path_;
   bool print_config_ = false;

@@ -62,6 +62,7 @@ int CheckCommand(std::span<const std::string> args) {
   std::string path;
   CommandLine line(kCheckManual);
   line.Add("input_path", &path, "DIR", "folder of the model", Need::kRequired, Positional::kYes);
+  line.Renamed("path", "input_path");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable no_options;
   if (const auto exit = line.Resolve(no_options)) return *exit;

@@ -17,6 +17,8 @@ void SequenceArguments::AddTo(CommandLine* line) {
   line->Add("image_path", &path, "PATH",
             "a data set: folder of images, native sequence, video or another (docs/datasets.md)", Need::kRequired,
             Positional::kYes);
+  line->Renamed("path", "image_path");
+  line->Renamed("input_path", "image_path");
   line->Add("camera", &camera_path, "FILE",
             "calibration; not needed where camera.yaml lies in the folder or beside the video; unknown: there is none",
             Need::kOptional);

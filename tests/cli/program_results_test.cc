@@ -303,6 +303,10 @@ TEST(Program, ModelCheckSaysWhatIsWrongAndExitsWithOne) {
   EXPECT_EQ(Pliant("model check").exit, 2);
   EXPECT_EQ(Pliant("model").exit, 2);
   EXPECT_EQ(Pliant("model check /nowhere").exit, 1);
+  const Outcome former = Pliant("model check --path '" + folder.string() + "'");
+  EXPECT_EQ(former.exit, 2);
+  EXPECT_EQ(former.err, "pliant model check: --path is now called --input_path\n");
+  EXPECT_EQ(Pliant("dataset info --path x").err, "pliant dataset info: --path is now called --image_path\n");
 }
 
 TEST(Program, ModelConvertSaysWhichNamesColmapDoesNotReadFromText) {
