@@ -166,6 +166,19 @@ std::vector<PixelTrack> TracksOf(const EvaluationInput& run) {
   return result;
 }
 
+// The same in space, in the frames that were tracked.
+std::vector<Track3d> TracksInSpace(const EvaluationInput& run) {
+  std::map<PointId, Track3d> tracks;
+  for (const EvaluationFrame& frame : run.frames) {
+    if (!frame.cam_from_world) continue;
+    for (const PointObservation& seen : frame.observations)
+      tracks[seen.id].points.push_back({frame.frame_idx, seen.pixel, *frame.cam_from_world * seen.position});
+  }
+  std::vector<Track3d> result;
+  for (auto& [id, track] : tracks) result.push_back(std::move(track));
+  return result;
+}
+
 Status ComputeTracks(const EvaluationInput& run, const Camera& camera, const Result<MaterialTruth*>& material,
                      const EvaluationOptions& options, Evaluation* evaluation) {
   // That there is no such truth was said of the material error.
@@ -174,7 +187,11 @@ Status ComputeTracks(const EvaluationInput& run, const Camera& camera, const Res
   for (const EvaluationFrame& frame : run.frames) frames.push_back(frame.frame_idx);
   Result<TrackError> error = material.ok() ? ComputeTrackError(TracksOf(run), frames, camera, **material)
                                            : Result<TrackError>(material.status());
-  return Take(EvaluationPart::kTracks, std::move(error), options, &evaluation->tracks, &evaluation->notes);
+  Status status = Take(EvaluationPart::kTracks, std::move(error), options, &evaluation->tracks, &evaluation->notes);
+  if (!status.ok() || !evaluation->tracks) return status;
+  const ErrorScale scale = run.metric ? ErrorScale::kNone : options.points.scale;
+  return Take(EvaluationPart::kTracks, ComputeTrackError3d(TracksInSpace(run), frames, camera, **material, scale),
+              options, &evaluation->tracks_3d, &evaluation->notes);
 }
 
 // What needs no truth; `sequence_camera` may be null.

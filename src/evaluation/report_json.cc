@@ -231,18 +231,33 @@ Json ToJson(const TrackSurvival& s) {
           {"frames", frames}};
 }
 
-Json ToJson(const TrackError& e) {
-  Json json = {{"tracks", e.tracks}, {"without_truth", e.without_truth}, {"points", e.points}, {"visible", e.visible}};
-  for (std::size_t k = 0; k < e.within.size(); ++k) {
-    const std::string distance = std::to_string(static_cast<int>(TrackError::kDistances_px[k]));
-    json["within_" + distance] = e.within[k];
-    json["jaccard_" + distance] = e.jaccard[k];
+Json SharesJson(const TrackScores& s) {
+  Json json;
+  for (std::size_t k = 0; k < s.within.size(); ++k) {
+    const std::string distance = std::to_string(static_cast<int>(TrackScores::kDistances_px[k]));
+    json["within_" + distance] = s.within[k];
+    json["jaccard_" + distance] = s.jaccard[k];
   }
-  json.update({{"average_within", e.average_within},
-               {"average_jaccard", e.average_jaccard},
-               {"occlusion_accuracy", e.occlusion_accuracy},
-               {"survival", e.survival},
-               {"median_px", e.median_px}});
+  json.update({{"average_within", s.average_within}, {"average_jaccard", s.average_jaccard}});
+  return json;
+}
+
+Json ToJson(const TrackScores& s) {
+  Json json = {{"tracks", s.tracks}, {"without_truth", s.without_truth}, {"points", s.points}, {"visible", s.visible}};
+  json.update(SharesJson(s));
+  json["occlusion_accuracy"] = s.occlusion_accuracy;
+  return json;
+}
+
+Json ToJson(const TrackError& e) {
+  Json json = ToJson(static_cast<const TrackScores&>(e));
+  json.update({{"survival", e.survival}, {"median_px", e.median_px}});
+  return json;
+}
+
+Json ToJson(const TrackError3d& e) {
+  Json json = ToJson(static_cast<const TrackScores&>(e));
+  json.update({{"median_mm", e.median_mm}, {"scale", e.scale}, {"null", SharesJson(e.null)}});
   return json;
 }
 
@@ -294,6 +309,7 @@ Json ToJson(const Evaluation& evaluation) {
           {"trajectory", evaluation.trajectory ? ToJson(*evaluation.trajectory) : Json()},
           {"first_map", evaluation.first_map ? ToJson(*evaluation.first_map) : Json()},
           {"tracks", evaluation.tracks ? ToJson(*evaluation.tracks) : Json()},
+          {"tracks_3d", evaluation.tracks_3d ? ToJson(*evaluation.tracks_3d) : Json()},
           {"reprojection", evaluation.reprojection ? ToJson(*evaluation.reprojection) : Json()},
           {"sfm", evaluation.sfm ? ToJson(*evaluation.sfm) : Json()},
           {"dense", evaluation.dense ? ToJson(*evaluation.dense) : Json()},

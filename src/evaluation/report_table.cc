@@ -182,20 +182,34 @@ std::string SurvivalTable(const TrackSurvival& s) {
   return text;
 }
 
+std::string TrackRow(const char* name, const std::array<double, 5>& shares, double mean) {
+  std::string text = FormatText("  %-22s", name);
+  for (const double share : shares) text += FormatText(" %7.1f", 100 * share);
+  return text + FormatText(" %7.1f\n", 100 * mean);
+}
+
+std::string TrackScoreRows(const TrackScores& s) {
+  return FormatText("  %-22s %7s %7s %7s %7s %7s %7s\n", "", "< 1 px", "< 2", "< 4", "< 8", "< 16", "mean") +
+         TrackRow("points within", s.within, s.average_within) + TrackRow("Jaccard", s.jaccard, s.average_jaccard);
+}
+
 std::string TrackErrorTable(const TrackError& e) {
-  const auto row = [](const char* name, const std::array<double, 5>& shares, double mean) {
-    std::string text = FormatText("  %-22s", name);
-    for (const double share : shares) text += FormatText(" %7.1f", 100 * share);
-    return text + FormatText(" %7.1f\n", 100 * mean);
-  };
   return FormatText("tracks against the truth, %% (%d tracks; distances in images of 256 x 256 px, as TAP-Vid)\n",
                     e.tracks) +
-         FormatText("  %-22s %7s %7s %7s %7s %7s %7s\n", "", "< 1 px", "< 2", "< 4", "< 8", "< 16", "mean") +
-         row("points within", e.within, e.average_within) + row("Jaccard", e.jaccard, e.average_jaccard) +
+         TrackScoreRows(e) +
          FormatText(
              "  occlusion accuracy %.1f; survival (to 50 px) %.1f; error where visible, median %.3f px of the "
              "image\n",
              100 * e.occlusion_accuracy, 100 * e.survival, e.median_px);
+}
+
+std::string TrackError3dTable(const TrackError3d& e) {
+  return FormatText("tracks in space, %% (%d tracks; pixels at the true depth, smaller side 256 px, as TAPVid-3D)\n",
+                    e.tracks) +
+         TrackScoreRows(e) + TrackRow("null: points within", e.null.within, e.null.average_within) +
+         TrackRow("null: Jaccard", e.null.jaccard, e.null.average_jaccard) +
+         FormatText("  occlusion accuracy %.1f; error where visible, median %.3f mm; scale %.4f\n",
+                    100 * e.occlusion_accuracy, e.median_mm, e.scale);
 }
 
 }  // namespace
@@ -212,6 +226,7 @@ std::string EvaluationTable(const Evaluation& evaluation) {
   for (const RunConsistency& other : evaluation.consistency) text += ConsistencyTable(other);
   if (evaluation.reprojection) text += ReprojectionTable(*evaluation.reprojection);
   if (evaluation.tracks) text += TrackErrorTable(*evaluation.tracks);
+  if (evaluation.tracks_3d) text += TrackError3dTable(*evaluation.tracks_3d);
   text += SurvivalTable(evaluation.survival);
   for (const std::string& note : evaluation.notes) text += "note: " + note + "\n";
   return text;

@@ -105,6 +105,7 @@ Result<EvaluationInput> ReadInput(const std::string& run_path, const Sequence* s
   if (!camera.ok()) return camera.status();
   input.camera = *std::move(camera);
   if (run->summary && run->summary->total_s > 0) input.seconds = run->summary->total_s;
+  if (run->summary) input.metric = run->summary->description.metric.value_or(false);
 
   FrameMap frames;
   for (const RunFrame& row : run->frames) TakeRow(*run, row, &FrameAt(row.frame_idx, row.timestamp_s, &frames));

@@ -115,11 +115,15 @@ TEST(RigidScene, OurTracksAreScoredAgainstTheTruth) {
   EXPECT_FALSE(run->surface);
   EXPECT_GT(run->tracks->average_within, kMinWithin);
   EXPECT_LE(run->tracks->average_jaccard, run->tracks->average_within);
+  ASSERT_TRUE(run->tracks_3d);
+  EXPECT_GT(run->tracks_3d->average_within, run->tracks_3d->null.average_within);
+  EXPECT_GT(run->tracks_3d->average_jaccard, run->tracks_3d->null.average_jaccard);
   ASSERT_TRUE(WriteTrackNpz(folder.Path("tracks.npz"), TracksOfDefaultRun(), 60).ok());
   const auto file = EvaluateTrackFile({.path = folder.Path("tracks.npz")}, *truth);
   ASSERT_TRUE(file.ok()) << file.status().message();
   EXPECT_NEAR(file->tracks->average_within, run->tracks->average_within, 1e-3);  // a file has floats
   EXPECT_EQ(file->survival.tracks, run->survival.tracks);
+  EXPECT_FALSE(file->tracks_3d);
 }
 
 }  // namespace

@@ -136,6 +136,22 @@ TEST(Evaluate, GivesTheMaterialErrorBesideTheSurfaceError) {
   EXPECT_NEAR(evaluation->material->error.plain.estimate.max_scale, 2, kScaleOfDrift);
 }
 
+TEST(Evaluate, ScoresTracksInSpaceAtOneScaleUnlessTheRunIsMetric) {
+  const TruthSequence sequence(8);
+  WallMaterial wall(sequence);
+  EvaluationInput run = MakeRun(8, 2, 0);
+  const auto scaled = Evaluate(run, sequence, &wall, WithParts({EvaluationPart::kTracks}));
+  run.metric = true;
+  const auto metric = Evaluate(run, sequence, &wall, WithParts({EvaluationPart::kTracks}));
+  ASSERT_TRUE(scaled.ok() && metric.ok());
+  ASSERT_TRUE(scaled->tracks && scaled->tracks_3d && metric->tracks_3d);
+  EXPECT_EQ(scaled->tracks_3d->tracks, 40);
+  EXPECT_GT(scaled->tracks_3d->points, scaled->tracks->points);  // the first frames of the tracks
+  EXPECT_NEAR(scaled->tracks_3d->scale, 2, kScaleOfDrift);
+  EXPECT_EQ(metric->tracks_3d->scale, 1);
+  EXPECT_EQ(metric->tracks_3d->average_within, 0);
+}
+
 TEST(Evaluate, RefusesRunsThatDoNotBelongToTheSequence) {
   const auto longer = Evaluate(MakeRun(9, 1, 1), TruthSequence(8), kNoMaterial, {});
   EXPECT_EQ(longer.status().code(), ErrorCode::kMismatch);
@@ -187,6 +203,9 @@ TEST(EvaluationReport, TableJsonAndCsvSayTheSame) {
   EXPECT_EQ(json["material"]["estimate"]["mean_rmse_mm"], evaluation->material->error.plain.estimate.mean_rmse_mm);
   EXPECT_EQ(json["material"]["drift"]["median_px"], evaluation->material->drift.median_px);
   EXPECT_EQ(json["trajectory"]["ate_rmse_mm"], evaluation->trajectory->ate_rmse_mm);
+  EXPECT_EQ(json["tracks"]["average_jaccard"], evaluation->tracks->average_jaccard);
+  EXPECT_EQ(json["tracks_3d"]["within_16"], evaluation->tracks_3d->within[4]);
+  EXPECT_EQ(json["tracks_3d"]["null"]["average_jaccard"], evaluation->tracks_3d->null.average_jaccard);
   EXPECT_EQ(json["survival"]["alive_share_50"], 1);
   const FirstMapError& first_map = *evaluation->first_map;
   EXPECT_EQ(json["first_map"]["declared_frame"], kFirstMap.declared_frame_idx);

@@ -20,6 +20,7 @@
 #include "evaluation/truth_sequence.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/evaluation/report.h"
+#include "pliant/io/run_summary.h"
 #include "pliant/simulation/write_sequence.h"
 #include "support/tolerances.h"
 
@@ -135,6 +136,19 @@ TEST_F(RunFolderEvaluation, ReadsAnotherSystemsResultAndGivesItsPosesTheirFrames
   EXPECT_NEAR(from_disk->surface->plain.estimate.mean_rmse_mm, direct->surface->plain.estimate.mean_rmse_mm,
               kLengthRoundOff_mm);
   EXPECT_EQ(ReadEvaluationInput((root_ / "nothing").string(), sequence, {}).status().code(), ErrorCode::kNotFound);
+}
+
+TEST_F(RunFolderEvaluation, ARunSaysWhetherItsUnitsAreMillimeters) {
+  Write("trajectory.txt", "");
+  Write("observations.csv", "frame,point_id,u_px,v_px,x,y,z,ssim\n");
+  RunSummary summary;
+  for (const std::optional<bool> metric : {std::optional<bool>(), std::optional(false), std::optional(true)}) {
+    summary.description.metric = metric;
+    ASSERT_TRUE(WriteRunSummary(Run() + "/run.json", summary).ok());
+    const auto read = ReadEvaluationInput(Run());
+    ASSERT_TRUE(read.ok()) << read.status().message();
+    EXPECT_EQ(read->metric, metric.value_or(false));
+  }
 }
 
 TEST_F(RunFolderEvaluation, RefusesPosesOfAnotherClock) {

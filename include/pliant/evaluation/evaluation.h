@@ -28,6 +28,7 @@
 #include "pliant/evaluation/sfm_error.h"
 #include "pliant/evaluation/surface_truth.h"
 #include "pliant/evaluation/track_error.h"
+#include "pliant/evaluation/track_error_3d.h"
 #include "pliant/evaluation/track_survival.h"
 #include "pliant/evaluation/trajectory_error.h"
 #include "pliant/evaluation/uncertainty_error.h"
@@ -76,6 +77,7 @@ struct Evaluation {
   std::optional<TrajectoryError> trajectory;      // where it has poses
   std::optional<FirstMapError> first_map;         // where it has depth and the run says which frames it is from
   std::optional<TrackError> tracks;               // in the images, where it knows its material
+  std::optional<TrackError3d> tracks_3d;          // in space, likewise; tracks of a file have none
   std::optional<ReprojectionError> reprojection;  // where it has points
   std::optional<RelativeDepthError> sfm;          // where there are points of structure from motion
   std::vector<RunConsistency> consistency;        // with the other runs that were given

@@ -40,6 +40,7 @@ struct EvaluationInput {
   std::optional<Camera> camera;         // where the folder has one (sparse/cameras)
   std::optional<double> seconds;        // that the run took, where it says so (run.json)
   std::vector<std::string> notes;       // what was left out in reading, one sentence each
+  bool metric = false;                  // a map unit is a millimeter, as the run says (run.json)
 };
 
 // Whether the camera that a run's folder names must be the sequence's.
