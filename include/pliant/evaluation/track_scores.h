@@ -5,8 +5,7 @@
 // (track_error_3d.h); these say what a distance is, and which frames of a track count. A point is truly visible where
 // nothing hides it and it lies in the image.
 //   within d            share of the truly visible points whose estimate is nearer than d to the truth; a frame in
-//   which
-//                       the track has no estimate counts as not
+//                       which the track has no estimate counts as not
 //   occlusion accuracy  share of all points whose visibility is right; no estimate is taken as hidden
 //   Jaccard at d        true positives / (truly visible + false positives). True positives are seen, truly visible and
 //                       nearer than d; false positives are seen, and hidden in truth or not nearer than d
