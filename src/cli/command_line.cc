@@ -190,7 +190,7 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
     } else if (argument.times == Times::kSeveral) {
       app.add_option_function<std::vector<std::string>>(
              names, [&argument](const std::vector<std::string>& values) { argument.given = values; })
-          ->allow_extra_args(false);  // one value each time it is given
+          ->allow_extra_args(argument.positional == Positional::kYes);  // else one value each time it is given
     } else {
       app.add_option_function<std::string>(names, [&argument](const std::string& value) { argument.given = {value}; });
     }
