@@ -33,8 +33,8 @@ NOT_COPIED = shutil.ignore_patterns("__pycache__", "work", "site", ".snakemake",
 # (heading of the navigation, its pages; a page is a path, or a title with a path)
 NAVIGATION = (
     ("Use", (("Getting started", "README"), ("Installation", "docs/building"), "docs/your_own_video",
-             "docs/troubleshooting", "options/index", "examples/notebooks/README", "docs/evaluation", "docs/report",
-             "docs/datasets", "docs/simulation", "docs/tracks", "docs/formats", "docs/exchange",
+             "docs/calibration", "docs/troubleshooting", "options/index", "examples/notebooks/README",
+             "docs/evaluation", "docs/report", "docs/datasets", "docs/simulation", "docs/tracks", "docs/formats", "docs/exchange",
              "docs/reliability")),
     ("Python and C++", (("Python", "docs/python"), "python_api", ("C++ library", "docs/library"), "cpp_api")),
     ("Understand", ("docs/concepts", "docs/method", "docs/results", "experiments/README", "docs/gallery")),

@@ -36,6 +36,7 @@ const Manual kCalibrateManual = {
     "Of two cameras that see the board at the same time, --right_path names the images of the right one, in the same "
     "order, or --pairs says how each image holds both. Then --output_path becomes a stereo calibration (OpenCV's YAML) "
     "with the right camera's pose in the left one, in mm.\n\n"
+    "Images that are mirrored give a mirrored camera; only ChArUco boards tell.\n\n"
     "Good images: 15 to 40, sharp, the board as large as half of the image, in its corners too, tilted by 30 to 45 "
     "degrees in several directions.",
     {"pliant calibrate --image_path board.mp4 --board chessboard:9x6:2.0 --output_path camera.yaml",
