@@ -15,6 +15,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "commit.h"  // made by cmake/WriteCommit.cmake
+
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
@@ -79,7 +81,7 @@ int Run(std::span<const std::string> args) {
     return kExitOk;
   }
   if (name == "--version") {
-    std::cout << "pliant " << kVersion << "\nbuilt by " << BuildText() << "\nwith " << LibrariesText() << "\n";
+    std::cout << "pliant " << kVersion << kCommitText << "\nbuilt by " << BuildText() << "\nwith " << LibrariesText() << "\n";
     return kExitOk;
   }
   std::vector<std::string> names;
