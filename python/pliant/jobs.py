@@ -90,7 +90,7 @@ def calibrate(image_path: StrPath, board: str, output_path: StrPath | None = Non
         options: such as {"Calibrate.model": "OPENCV_FISHEYE"}.
         figure: a picture of the errors, .png, .svg or .pdf.
         overwrite: replace files that are there.
-        on_progress: called with what is done ("search" in images, "start", "fit" and "check" of camera models), how much
+        on_progress: called with what is done ("search" in images, their "size", "start", "fit" and "check" of camera models), how much
             of it is done, and how much there is (0: not known).
 
     Raises:

@@ -18,6 +18,7 @@ namespace {
 constexpr int kBarWidth = 24;
 constexpr std::string_view kPercent = "%";
 constexpr std::chrono::milliseconds kDrawEvery{100};  // faster than the eye needs, and cheap
+constexpr std::chrono::seconds kLineAfter{2};         // since the one before, however little was done
 constexpr std::string_view kToLineStartAndClear = "\r\x1b[K";
 
 }  // namespace
@@ -87,10 +88,11 @@ void Progress::Update(int done, std::string_view detail, Clock::time_point now) 
     drawn_ = now;
     line_open_ = true;
   } else if ((style_ == ProgressStyle::kLines || style_ == ProgressStyle::kJson) &&
-             (last || done / kLinesEvery > lines_)) {
+             (last || done / kLinesEvery > lines_ || now - drawn_ >= kLineAfter)) {
     out_ << (style_ == ProgressStyle::kJson ? JsonLine(done, detail, now) : Line(done, detail, now) + "\n")
          << std::flush;
     lines_ = done / kLinesEvery;
+    drawn_ = now;
   }
 }
 

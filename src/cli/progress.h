@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How far a command is: one line that is drawn over on a terminal, plain lines elsewhere (every kLinesEvery frames, so
-// that a log stays readable), JSON or nothing on request (messages.h).
+// How far a command is: one line that is drawn over on a terminal, plain lines elsewhere (every kLinesEvery frames,
+// and two seconds after the one before, so that a log stays readable), JSON or nothing on request (messages.h).
 //   track  [=========>          ]  45/100  41.3 frames/s  2 s left  498 points
 #pragma once
 

@@ -44,13 +44,28 @@ std::vector<cv::Mat> SomeOf(const std::vector<cv::Mat>& images) {
   return some;
 }
 
-// What `look` says of each image, at the same time.
+// How images are looked at once more, where the board may be another one than was said.
+struct SecondLook {
+  int threads = 1;
+  const JobProgress& progress;
+};
+
+// What `look` says of each image, `threads` of them at the same time.
 template <class Look>
-auto InEach(const std::vector<cv::Mat>& images, int threads, const Look& look) {
+auto InEach(const std::vector<cv::Mat>& images, const SecondLook& how, const Look& look)
+    -> Result<std::vector<decltype(look(images.front()))>> {
+  const auto count = static_cast<int>(images.size());
   std::vector<decltype(look(images.front()))> answers(images.size());
-  ParallelFor(
-      static_cast<int>(images.size()), threads,
-      [&](int i) { answers[static_cast<std::size_t>(i)] = look(images[static_cast<std::size_t>(i)]); }, 1);
+  for (int begin = 0; begin < count; begin += how.threads) {
+    if (Status status = Tell(how.progress, "size", begin, count); !status.ok()) return status;
+    ParallelFor(
+        std::min(how.threads, count - begin), how.threads,
+        [&](int i) {
+          const auto idx = static_cast<std::size_t>(begin + i);
+          answers[idx] = look(images[idx]);
+        },
+        1);
+  }
   return answers;
 }
 
@@ -64,12 +79,14 @@ struct SeenSize {
   bool IsOfMost() const { return 2 * images > with_any && size.longer * size.shorter >= kFewestCorners; }
 };
 
-SeenSize MostSeenSize(const std::vector<cv::Mat>& images, int threads) {
+Result<SeenSize> MostSeenSize(const std::vector<cv::Mat>& images, const SecondLook& how) {
   const std::vector<cv::Mat> some = SomeOf(images);
+  const auto sizes = InEach(some, how, LargestChessboard);
+  if (!sizes.ok()) return sizes.status();
   std::map<std::pair<int, int>, int> images_of_size;
   SeenSize seen;
   seen.looked_at = static_cast<int>(some.size());
-  for (const auto& size : InEach(some, threads, LargestChessboard)) {
+  for (const auto& size : *sizes) {
     if (!size) continue;
     ++images_of_size[{size->longer, size->shorter}];
     ++seen.with_any;
@@ -85,11 +102,13 @@ std::string SeenSentence(const SeenSize& seen, const CalibrationBoard& board) {
          "chessboard:" + SizeName(seen.size) + ":" + FormatDouble(board.spacing_mm);
 }
 
-bool ShowOtherMarkers(const std::vector<cv::Mat>& images, const CalibrationBoard& board, int threads) {
+Result<bool> ShowOtherMarkers(const std::vector<cv::Mat>& images, const CalibrationBoard& board,
+                              const SecondLook& how) {
   if (board.kind != BoardKind::kCharuco) return false;
   const auto others =
-      InEach(SomeOf(images), threads, [&](const cv::Mat& image) { return ShowsOtherMarkers(image, board) ? 1 : 0; });
-  return 2 * std::count(others.begin(), others.end(), 1) > static_cast<std::ptrdiff_t>(others.size());
+      InEach(SomeOf(images), how, [&](const cv::Mat& image) { return ShowsOtherMarkers(image, board) ? 1 : 0; });
+  if (!others.ok()) return others.status();
+  return 2 * std::count(others->begin(), others->end(), 1) > static_cast<std::ptrdiff_t>(others->size());
 }
 
 std::string OtherMarkers(const CalibrationBoard& board) {
@@ -100,19 +119,24 @@ std::string OtherMarkers(const CalibrationBoard& board) {
 
 // Why the board is seen in so few of the images of one camera.
 Status NotSeen(const CalibrateRequest& request, const std::string& source, const std::vector<cv::Mat>& images,
-               std::size_t seen_in, int threads) {
+               std::size_t seen_in, const SecondLook& how) {
   const CalibrationBoard& board = request.board;
   const std::string sentence = "the " + board.Title() + " is in " +
                                (seen_in == 0 ? "none" : "only " + std::to_string(seen_in)) + " of the " +
                                std::to_string(images.size()) + " images of " + source + " that were searched; ";
   const ChessboardSize own{std::max(board.columns, board.rows), std::min(board.columns, board.rows)};
   if (board.kind == BoardKind::kChessboard) {
-    const SeenSize seen = MostSeenSize(images, threads);
-    if (seen.IsOfMost() && seen.size != own && 2 * seen.images > seen.looked_at)
-      return {ErrorCode::kInsufficient, sentence + SeenSentence(seen, board)};
+    const auto seen = MostSeenSize(images, how);
+    if (!seen.ok()) return seen.status();
+    if (seen->IsOfMost() && seen->size != own && 2 * seen->images > seen->looked_at)
+      return {ErrorCode::kInsufficient, sentence + SeenSentence(*seen, board)};
   }
-  if (ShowOtherMarkers(images, board, threads)) return {ErrorCode::kInsufficient, sentence + OtherMarkers(board)};
-  if (std::any_of(images.begin(), images.end(), [&](const cv::Mat& image) { return IsMirrored(image, board); }))
+  const auto others = ShowOtherMarkers(images, board, how);
+  if (!others.ok()) return others.status();
+  if (*others) return {ErrorCode::kInsufficient, sentence + OtherMarkers(board)};
+  const auto mirrored = InEach(images, how, [&](const cv::Mat& image) { return IsMirrored(image, board) ? 1 : 0; });
+  if (!mirrored.ok()) return mirrored.status();
+  if (std::ranges::count(*mirrored, 1) > 0)
     return {ErrorCode::kInsufficient, sentence + "it is in their mirror images: flip them first"};
   return {ErrorCode::kInsufficient, sentence + "check its kind" +
                                         (board.kind == BoardKind::kCharuco ? ", dictionary" : "") +
@@ -122,25 +146,30 @@ Status NotSeen(const CalibrateRequest& request, const std::string& source, const
 // A part of a larger board looks like a whole one, but another part in every image. Those in which it is not seen show
 // the larger one, too.
 Status CheckSize(const CalibrateRequest& request, const std::vector<cv::Mat>& images,
-                 const std::vector<cv::Mat>& with_board, int threads) {
+                 const std::vector<cv::Mat>& with_board, const SecondLook& how) {
   const CalibrationBoard& board = request.board;
   const std::string is_part = "the " + board.Title() + " is a part of what the images show: ";
   if (board.kind == BoardKind::kChessboard) {
-    const SeenSize of_found = MostSeenSize(with_board, threads);
-    if (of_found.IsOfMost() && 2 * of_found.images > of_found.looked_at && IsPart(board, of_found.size))
-      return {ErrorCode::kInsufficient, is_part + SeenSentence(of_found, board)};
-    const SeenSize of_all = MostSeenSize(images, threads);
-    if (of_all.IsOfMost() && of_all.with_any >= kFewestWithAny && IsPart(board, of_all.size))
-      return {ErrorCode::kInsufficient, is_part + SeenSentence(of_all, board)};
+    const auto of_found = MostSeenSize(with_board, how);
+    if (!of_found.ok()) return of_found.status();
+    if (of_found->IsOfMost() && 2 * of_found->images > of_found->looked_at && IsPart(board, of_found->size))
+      return {ErrorCode::kInsufficient, is_part + SeenSentence(*of_found, board)};
+    const auto of_all = MostSeenSize(images, how);
+    if (!of_all.ok()) return of_all.status();
+    if (of_all->IsOfMost() && of_all->with_any >= kFewestWithAny && IsPart(board, of_all->size))
+      return {ErrorCode::kInsufficient, is_part + SeenSentence(*of_all, board)};
     return Status::Ok();
   }
-  if (board.kind == BoardKind::kCharuco)
-    return ShowOtherMarkers(with_board, board, threads)
-               ? Status(ErrorCode::kInsufficient, is_part + OtherMarkers(board))
-               : Status::Ok();
+  if (board.kind == BoardKind::kCharuco) {
+    const auto others = ShowOtherMarkers(with_board, board, how);
+    if (!others.ok()) return others.status();
+    return *others ? Status(ErrorCode::kInsufficient, is_part + OtherMarkers(board)) : Status::Ok();
+  }
   std::map<std::pair<int, int>, int> images_of_size;
   const std::vector<cv::Mat> some = SomeOf(with_board);
-  for (const auto& larger : InEach(some, threads, [&](const cv::Mat& image) { return LargerCircles(image, board); }))
+  const auto larger_ones = InEach(some, how, [&](const cv::Mat& image) { return LargerCircles(image, board); });
+  if (!larger_ones.ok()) return larger_ones.status();
+  for (const auto& larger : *larger_ones)
     if (larger) ++images_of_size[{larger->columns, larger->rows}];
   for (const auto& [size, number] : images_of_size)
     if (2 * number > static_cast<int>(some.size()))
@@ -154,6 +183,7 @@ Status CheckSize(const CalibrateRequest& request, const std::vector<cv::Mat>& im
 Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const CalibrateOptions& options,
                                       const BoardRecording& recording, std::size_t camera, Lenses lenses,
                                       const std::string& source, const JobProgress& progress) {
+  const SecondLook how{options.threads, progress};
   std::vector<BoardView> seen;
   std::vector<std::size_t> image_of_seen;
   std::vector<cv::Mat> all;
@@ -167,8 +197,8 @@ Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const Cal
     with_board.push_back(image.smaller[camera]);
   }
   if (seen.size() < kFewestCalibrationViews && 2 * seen.size() <= all.size())
-    return NotSeen(request, source, all, seen.size(), options.threads);
-  if (Status status = CheckSize(request, all, with_board, options.threads); !status.ok()) return status;
+    return NotSeen(request, source, all, seen.size(), how);
+  if (Status status = CheckSize(request, all, with_board, how); !status.ok()) return status;
 
   const cv::Size size = recording.sizes[camera];
   const std::vector<int> chosen = ChooseVariedViews(request.board, seen, size.width, size.height, options.max_views);
@@ -238,7 +268,7 @@ Status CheckCalibrationOutput(const std::filesystem::path& path, ExistingFile ex
     return {ErrorCode::kUnwritable, Quoted(path.string()) + " is a folder; name the file to write"};
   if (existing == ExistingFile::kKeep && std::filesystem::exists(path, error))
     return {ErrorCode::kUnwritable,
-            Quoted(path.string()) + " is there already; delete it, or say that it is to be overwritten"};
+            Quoted(path.string()) + " is there already; delete it, or give --overwrite (Python: overwrite=True)"};
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder, error))
     return {ErrorCode::kUnwritable, "there is no folder " + Quoted(folder.string()) + "; make it first"};

@@ -53,11 +53,13 @@ TEST(Progress, SharesOfTheWorkHaveNoRate) {
   std::ostringstream out;
   Progress progress(out, ProgressStyle::kLines, "refine", 100, "%");
   progress.Update(0, "rigid", Progress::Clock::now() + seconds(1));
-  EXPECT_EQ(out.str(), "");
+  EXPECT_EQ(out.str(), "");  // nothing is said of what takes less than two seconds
   progress.Update(50, "rigid", Progress::Clock::now() + seconds(10));
   EXPECT_EQ(out.str(), "refine  50 %  10 s left  rigid\n");
   progress.Update(51, "rigid", Progress::Clock::now() + seconds(11));
   EXPECT_EQ(std::ranges::count(out.str(), '\n'), 1);
+  progress.Update(52, "rigid", Progress::Clock::now() + seconds(13));
+  EXPECT_EQ(std::ranges::count(out.str(), '\n'), 2) << "a slow step is told of after two seconds";
 }
 
 TEST(Progress, TheBarIsDrawnOverAndEndsItsLine) {

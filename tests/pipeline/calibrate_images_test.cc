@@ -161,7 +161,7 @@ TEST_F(CalibrateImagesTest, SaysWhereThereIsNothing) {
 
 TEST_F(CalibrateImagesTest, EndsOnRequest) {
   const CalibrateRequest request = Request(3);
-  for (const std::string_view last : {"search", "start", "fit", "check"}) {
+  for (const std::string_view last : {"search", "size", "start", "fit", "check"}) {
     const auto summary = CalibrateImages(request, {}, [&](std::string_view task, int, int) { return task != last; });
     ASSERT_FALSE(summary.ok()) << last;
     EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted) << last;

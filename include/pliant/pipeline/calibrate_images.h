@@ -87,7 +87,8 @@ struct CalibratePairsSummary {
 // Fails with kNotFound and kUnreadable for images that cannot be read, kMismatch for images of different sizes,
 // kInsufficient where the board is not seen, is larger than was said (the sentence says what is seen) or the images do
 // not determine the camera, kInterrupted by `progress`, and kUnwritable. camera.yaml is written at the end only. Tasks
-// of `progress`: "search" for the board in images, then those of CalibrateCamera.
+// of `progress`: "search" for the board in images, "size" of what is seen in some of them, then those of
+// CalibrateCamera.
 Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const CalibrateOptions& options,
                                          const JobProgress& progress);
 
