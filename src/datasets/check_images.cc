@@ -260,7 +260,8 @@ ImageCheck ImageChecker::Check() const {
 
 Result<std::optional<SequenceFrame>> CheckedSequence::Next() {
   auto frame = source_.Next();
-  if (frame.ok() && frame->has_value()) checker_.Add(**frame);
+  failed_ = failed_ || !frame.ok();
+  if (!failed_ && frame->has_value()) checker_.Add(**frame);
   return frame;
 }
 

@@ -12,7 +12,6 @@
 #include "datasets/depth_prior_file.h"
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
-#include "image/image_size.h"
 
 namespace pliant {
 namespace {
@@ -197,12 +196,8 @@ Status DataSetSequence::CheckFiles() const {
   if (!masks_) return Status::Ok();
   for (int idx = range.start; idx < range.end; idx += range.stride) {
     const fs::path mask = masks_->Find(idx, fs::path(images().Name(idx)).stem().string());
-    std::optional<cv::Size> size = ReadImageSize(mask);
-    if (!size) {
-      const Result<cv::Mat> decoded = ReadMaskImage(mask);
-      if (!decoded.ok()) return decoded.status();
-      size = decoded->size();
-    }
+    const Result<cv::Size> size = SizeOfImageFile(mask);
+    if (!size.ok()) return size.status();
     if (Status status = CheckFrameMaskSize(mask, *size, MaskSize()); !status.ok()) return status;
   }
   return Status::Ok();

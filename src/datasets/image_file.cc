@@ -146,6 +146,24 @@ Result<DecodedImage> Decode(const std::filesystem::path& path) {
   return decoded;
 }
 
+// Whether the last bytes have the end marker of a PNG or a JPEG; of other files they say nothing.
+bool EndsAsAnImage(const std::filesystem::path& path) {
+  constexpr std::streamoff kTail = 64;  // some programs write a little behind the marker
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : 0;
+  if (size <= kTail) return false;
+  Bytes head(8);
+  Bytes tail(static_cast<std::size_t>(kTail));
+  file.seekg(0).read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head.size()));
+  file.seekg(size - kTail).read(reinterpret_cast<char*>(tail.data()), kTail);
+  if (!file) return false;
+  constexpr std::string_view kPngEnd = "IEND";
+  constexpr std::array<unsigned char, 2> kJpegEnd = {0xFF, 0xD9};
+  if (IsPng(head)) return std::search(tail.begin(), tail.end(), kPngEnd.begin(), kPngEnd.end()) != tail.end();
+  if (IsJpeg(head)) return std::search(tail.begin(), tail.end(), kJpegEnd.begin(), kJpegEnd.end()) != tail.end();
+  return true;
+}
+
 // Gray or BGR; what the fourth channel says is dropped.
 cv::Mat WithoutAlpha(cv::Mat image) {
   if (image.channels() == 1 || image.channels() == 3) return image;
@@ -158,6 +176,12 @@ cv::Mat WithoutAlpha(cv::Mat image) {
 }
 
 }  // namespace
+
+Result<cv::Size> SizeOfImageFile(const std::filesystem::path& path) {
+  if (const auto size = ReadImageSize(path); size && EndsAsAnImage(path)) return *size;
+  const Result<DecodedImage> decoded = Decode(path);
+  return decoded.ok() ? Result(decoded->image.size()) : decoded.status();
+}
 
 std::string SizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 

@@ -21,6 +21,10 @@ inline std::string SizeText(const cv::Mat& image) { return SizeText(image.cols, 
 // All of them refuse images of more than kMaxImageMegapixels (image/image_size.h), where the head tells the size before
 // they are decoded.
 
+// The size of an image. A file whose head tells it, and whose end looks like one (PNG, JPEG), is not decoded. Else
+// fails as ReadImage does: what is cut off or no image is found without reading whole files.
+Result<cv::Size> SizeOfImageFile(const std::filesystem::path& path);
+
 // 8-bit with one (gray) or three (BGR) channels. 16-bit values are divided by 257, alpha is dropped, EXIF is ignored.
 // Fails with kNotFound or kUnreadable.
 Result<cv::Mat> ReadImage(const std::filesystem::path& path);

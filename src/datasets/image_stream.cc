@@ -7,7 +7,6 @@
 
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
-#include "image/image_size.h"
 
 namespace pliant {
 namespace {
@@ -33,9 +32,8 @@ class FileStream final : public ImageStream {
 
   Result<std::optional<cv::Size>> StoredSize(int idx) const override {
     if (idx >= count()) return std::optional<cv::Size>();
-    if (const auto size = ReadImageSize(At(idx))) return std::optional(*size);
-    const Result<cv::Mat> image = ReadImage(At(idx));
-    return image.ok() ? Result(std::optional(image->size())) : image.status();
+    const Result<cv::Size> size = SizeOfImageFile(At(idx));
+    return size.ok() ? Result(std::optional(*size)) : size.status();
   }
 
   Result<std::optional<cv::Mat>> Read(int idx) override {

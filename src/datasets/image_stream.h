@@ -36,8 +36,8 @@ class ImageStream {
   // What the images' size is said to be, or that of image `idx`; nothing where it cannot be seen.
   virtual std::optional<cv::Size> SizeAt(int idx) const = 0;
 
-  // The size of the file of image `idx`, before any change of it; nothing where there is no file. Only a file whose
-  // head does not say it is decoded, and then fails as Read does.
+  // The size of the file of image `idx`, before any change of it; nothing where there is no file. Fails as Read does
+  // where the file is cut off or no image; it is decoded only where its head and end do not tell.
   virtual Result<std::optional<cv::Size>> StoredSize(int /*idx*/) const { return std::optional<cv::Size>(); }
 
   // 8-bit, gray or BGR; nothing beyond the end. `idx` may not be smaller than the time before. Fails with kNotFound or

@@ -220,7 +220,11 @@ TEST(CheckedSequence, GivesWhatItsSourceGives) {
       SequenceFrame frame;
       frame.frame_idx = next_;
       frame.image = Image();
-      return next_++ < 2 ? std::optional(frame) : std::nullopt;
+      if (next_ == 2) {
+        next_ += 2;
+        return Status(ErrorCode::kUnreadable, "it is cut off");
+      }
+      return next_++ < 8 ? std::optional(frame) : std::nullopt;
     }
     Result<std::optional<cv::Mat>> Depth(int) const override { return std::optional<cv::Mat>(); }
     std::optional<Rigid3> WorldFromCamera(int) const override { return std::nullopt; }
@@ -234,8 +238,11 @@ TEST(CheckedSequence, GivesWhatItsSourceGives) {
   CheckedSequence checked(source);
   EXPECT_EQ((*checked.Next())->frame_idx, 0);
   EXPECT_EQ((*checked.Next())->frame_idx, 1);
-  EXPECT_FALSE(checked.Next()->has_value());
+  // What is read ahead behind a failure, at which a run ends, says nothing of the images before.
+  EXPECT_FALSE(checked.Next().ok());
+  EXPECT_EQ((*checked.Next())->frame_idx, 4);
   EXPECT_EQ(checked.Check().images, 2);
+  EXPECT_THAT(checked.Check().wrong, testing::Not(testing::Contains(testing::HasSubstr("are damaged"))));
 }
 
 class RecordedTimes : public OpenSequenceTest {};

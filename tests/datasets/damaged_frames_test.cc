@@ -111,6 +111,11 @@ TEST_F(OpenSequenceTest, FindsAnImageOfAnotherSizeOrWithoutAHead) {
     EXPECT_EQ(without_head.code(), ErrorCode::kUnreadable) << extension;
     EXPECT_THAT(without_head.message(), HasSubstr(std::string("000002") + extension)) << extension;
     EXPECT_TRUE(Open(before)->CheckFiles().ok()) << extension;
+    Write(std::string("images/000002") + extension, Image(2));
+    EXPECT_TRUE(Open(Request())->CheckFiles().ok()) << extension;
+    Truncate(std::string("images/000002") + extension, 0.9);
+    const bool tells = extension != std::string(".bmp");  // by an end marker
+    EXPECT_THAT(Open(Request())->CheckFiles().message(), HasSubstr(tells ? " is truncated" : "")) << extension;
   }
 }
 

@@ -95,6 +95,7 @@ class CheckedSequence final : public Sequence {
 
  private:
   Sequence& source_;
+  bool failed_ = false;  // the run ends there; what is read ahead after it says nothing of it
   ImageChecker checker_;
 };
 

@@ -46,7 +46,7 @@ class Sequence {
   virtual Result<std::optional<SequenceFrame>> Next() = 0;
 
   // Whether the files of the images (of pairs: both) and masks of all frames are images, and have one size each. Only
-  // files whose head does not say a size are decoded. Fails with kUnreadable and kMismatch.
+  // files are decoded whose head and end do not tell. Fails with kUnreadable and kMismatch.
   virtual Status CheckFiles() const { return Status::Ok(); }
 
   // Truth by the frame's own index, where the sequence has it; nothing where not.
