@@ -18,21 +18,30 @@ constexpr double kMaxStep_s = 1000;        // of any camera
 constexpr double kMicrosecondSteps = 1e6;  // larger ones are nanoseconds
 constexpr double kMaxPriorStretch = 0.02;  // of the sides' ratio: sizes are rounded to multiples of a network's patches
 
+double MedianStep(std::span<const double> times_s) {
+  std::vector<double> steps_s;
+  for (std::size_t k = 1; k < times_s.size(); ++k) steps_s.push_back(times_s[k] - times_s[k - 1]);
+  return Median(std::move(steps_s));
+}
+
 }  // namespace
 
+std::string_view UnitOfSteps(std::span<const double> times_s) {
+  const double step_s = MedianStep(times_s);
+  if (!(step_s > kMaxStep_s)) return "";
+  return step_s < kMicrosecondSteps ? "microseconds" : "nanoseconds";
+}
+
 Status CheckFrameTimes(std::span<const double> times_s, const std::string& what) {
-  std::vector<double> steps_s;
   for (std::size_t k = 0; k < times_s.size(); ++k) {
     if (!std::isfinite(times_s[k]) || (k > 0 && !(times_s[k] > times_s[k - 1])))
       return {ErrorCode::kInvalidArgument,
               what + " not finite, or not growing, at frame " + std::to_string(k) + "; give times that grow"};
-    if (k > 0) steps_s.push_back(times_s[k] - times_s[k - 1]);
   }
-  const double step_s = Median(std::move(steps_s));
-  if (step_s <= kMaxStep_s) return Status::Ok();
-  const std::string unit = step_s < kMicrosecondSteps ? "micro" : "nano";
+  const std::string_view unit = UnitOfSteps(times_s);
+  if (unit.empty()) return Status::Ok();
   return {ErrorCode::kInvalidArgument,
-          what + " " + Digits(step_s, 0) + " apart, as " + unit + "seconds would be; give seconds"};
+          what + " " + Digits(MedianStep(times_s), 0) + " apart, as " + std::string(unit) + " would be; give seconds"};
 }
 
 Status CheckDepthPriorSize(cv::Size prior, cv::Size images, const std::string& what) {

@@ -7,9 +7,12 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "pliant/base/text.h"
+#include "pliant/datasets/frame_checks.h"
 
 namespace pliant {
 namespace {
@@ -68,6 +71,14 @@ std::string HowMany(std::size_t matched, std::size_t poses, const std::string& n
 
 std::string Span(double first_s, double last_s) { return Seconds(first_s) + " to " + Seconds(last_s); }
 
+// ", as nanoseconds would" where no camera is that slow.
+std::string UnitHint(std::span<const TimedPose> poses) {
+  std::vector<double> times;
+  for (const TimedPose& pose : poses) times.push_back(pose.timestamp_s);
+  const std::string_view unit = UnitOfSteps(times);
+  return unit.empty() ? "" : ", as " + std::string(unit) + " would";
+}
+
 }  // namespace
 
 Result<MatchedPoses> MatchPoses(std::span<const TimedPose> poses, const Sequence& sequence, double max_difference_s,
@@ -92,11 +103,12 @@ Result<MatchedPoses> MatchPoses(std::span<const TimedPose> poses, const Sequence
   const bool is_several = poses.size() > 1 && frame_at.size() > 1;
   const bool by_chance = is_several && (nearest.size() == 1 || share < kMinMatchedShare);
   if ((nearest.empty() && !poses.empty()) || by_chance)
-    return Status(ErrorCode::kMismatch,
-                  HowMany(std::min(near, nearest.size()), poses.size(), name) + " within " + Seconds(max_difference_s) +
-                      " of a frame: its times go from " + Span(poses.front().timestamp_s, poses.back().timestamp_s) +
-                      ", the sequence's from " + Span(frame_at.begin()->first, frame_at.rbegin()->first) +
-                      "; write times in seconds of the sequence's clock");
+    return Status(ErrorCode::kMismatch, HowMany(std::min(near, nearest.size()), poses.size(), name) + " within " +
+                                            Seconds(max_difference_s) + " of a frame: its times go from " +
+                                            Span(poses.front().timestamp_s, poses.back().timestamp_s) +
+                                            UnitHint(poses) + ", the sequence's from " +
+                                            Span(frame_at.begin()->first, frame_at.rbegin()->first) +
+                                            "; write times in seconds of the sequence's clock");
   MatchedPoses matched;
   for (const auto& [frame_idx, match] : nearest) matched.world_from_cam.emplace(frame_idx, match.pose->world_from_cam);
   if (unit->seconds != 1.0) matched.notes.push_back("the times of " + name + " are read as " + unit->name);

@@ -320,6 +320,15 @@ TEST_F(ImportTest, OnePoseOfSeveralThatIsNearAFrameIsThereByChance) {
   EXPECT_THAT(status.message(), HasSubstr("sequence's clock"));
 }
 
+TEST_F(ImportTest, TimesOfAnotherClockAreRefusedWithTheirUnit) {
+  folder_.Write("euroc.txt",
+                "1403636579763555584 1 2 3 0 0 0 1\n1403636579813555456 4 5 6 0 0 0 1\n"
+                "1403636579863555584 4 5 6 0 0 0 1\n");
+  const Status status = ImportFrom("euroc.txt", ImportFormat::kTum).status();
+  EXPECT_EQ(status.code(), ErrorCode::kMismatch);
+  EXPECT_THAT(status.message(), HasSubstr(" s, as nanoseconds would, the sequence's from"));
+}
+
 TEST_F(ImportTest, DamagedCameraPathsAreNamedByLine) {
   const std::vector<std::tuple<const char*, ImportFormat, const char*>> cases = {
       {"1 0 0 0 0 1 0 0 0 0 1\n", ImportFormat::kKitti, "12 numbers"},

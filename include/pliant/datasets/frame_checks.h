@@ -6,6 +6,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <opencv2/core/types.hpp>
 
@@ -13,8 +14,12 @@
 
 namespace pliant {
 
-// Times of successive frames, seconds: finite, growing, and not of another unit, which steps of more than a thousand
-// seconds (in the median) tell. `what` begins the sentence ("the times in times.txt are"). Fails with kInvalidArgument.
+// The unit, in place of seconds, that the median step of successive times is likely to have: "microseconds" above a
+// thousand, "nanoseconds" above a million; else empty.
+std::string_view UnitOfSteps(std::span<const double> times_s);
+
+// Times of successive frames, seconds: finite, growing, and not of another unit (UnitOfSteps). `what` begins the
+// sentence ("the times in times.txt are"). Fails with kInvalidArgument.
 Status CheckFrameTimes(std::span<const double> times_s, const std::string& what);
 
 // A depth prior of any size, whose sides are to one another as those of the images. `what` begins the sentence. Fails
