@@ -9,6 +9,7 @@
 #include "cli/interrupt.h"
 #include "cli/main_simulation_options.h"
 #include "cli/messages.h"
+#include "cli/output_folder.h"
 #include "cli/run_evaluation.h"
 #include "cli/track_progress.h"
 #include "pliant/base/text.h"
@@ -130,6 +131,7 @@ int DemoCommand(std::span<const std::string> args) {
   simulation.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
+  if (const auto exit = OutputFolder().Check(line, output_path, OutputFolder::Content::kSequence)) return *exit;
   if (const Status status = RunDemo(simulation, output_path); !status.ok()) {
     SayError(status.message());
     return kExitFailed;

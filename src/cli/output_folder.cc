@@ -51,6 +51,8 @@ void OutputFolder::AddTo(CommandLine* line, std::string why, Need need) {
 }
 
 std::optional<int> OutputFolder::Check(const CommandLine& line, const std::string& folder, Content content) const {
+  if (content == Content::kSequence && HoldsRun(folder))
+    return line.UsageError(Quoted(folder) + " holds a run; give another --output_path");
   const Kind kind = KindOf(content);
   if (overwrite || !kind.is_there(folder)) return std::nullopt;
   return line.UsageError(Quoted(folder) + " holds a " + kind.name +

@@ -20,7 +20,8 @@ struct OutputFolder {
   // --output_path and --overwrite.
   void AddTo(CommandLine* line, std::string why, Need need);
   // An exit code where there is a run with poses, a sequence with images or a surface that is not to be replaced (the
-  // sentence has been said). `folder`: `path`, or another one that the command writes.
+  // sentence has been said), or a run where a sequence is to be written. `folder`: `path`, or another one that the
+  // command writes.
   std::optional<int> Check(const CommandLine& line, const std::string& folder, Content content) const;
 };
 

@@ -67,10 +67,14 @@ std::string OfDepth(const FirstMapEvidence& evidence) {
 }
 
 // A certain map becomes provisional where its scene, which was taken for rigid, is found to deform (W13).
-std::string OfRigidity(const RunSummary& summary) {
+bool WasFoundToDeform(const RunSummary& summary) {
   const bool were_certain =
       std::ranges::none_of(summary.first_maps, [](const FirstMapFrames& map) { return map.evidence.provisional; });
-  if (!were_certain || FramesIn(summary, TrackingState::kProvisional) == 0) return {};
+  return were_certain && FramesIn(summary, TrackingState::kProvisional) > 0;
+}
+
+std::string OfRigidity(const RunSummary& summary) {
+  if (!WasFoundToDeform(summary)) return {};
   return "The scene was taken for rigid and then found to deform: where the map is provisional its depths are known "
          "less well than that.";
 }
@@ -89,7 +93,7 @@ std::string OfPrior(const RunSummary& summary) {
 std::string OfCamera(const FirstMapEvidence& evidence) {
   if (!(evidence.depth_sigma > 0.0)) return {};
   const bool was_tested = evidence.still_camera_error_ratio > 0.0;
-  if (!evidence.deforming && !was_tested) return "the scene was found to be rigid; all motion is the camera's.";
+  if (!evidence.deforming && !was_tested) return "the scene was taken for rigid, so that all motion is the camera's.";
   if (!was_tested) return "the scene deforms; whether the camera moves was not tested.";
   const std::string by_errors =
       std::string(evidence.deforming ? "the scene deforms"
@@ -189,7 +193,11 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   add("frames", OfFrames(summary));
   add("depth", Joined({OfMaps(summary, OfDepth), OfRigidity(summary)}));
   add("depth_prior", OfPrior(summary));
-  add("camera", OfMaps(summary, OfCamera));
+  add("camera",
+      Joined({OfMaps(summary, OfCamera), WasFoundToDeform(summary) ? "Later it was found to deform: from then "
+                                                                     "on a part of the motion may be the "
+                                                                     "scene's."
+                                                                   : ""}));
   add("calibration", Joined({OfAssumedCamera(summary.description), OfMaps(summary, OfCalibration)}));
   add("images", OfImages(summary.description));
   if (summary.median_reprojection_error_px > 0.0) add("tracks", OfTracks(summary));

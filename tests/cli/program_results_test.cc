@@ -123,6 +123,16 @@ TEST(Program, ImportMakesARunOfACameraPathAndSaysWhatItCannotRead) {
   EXPECT_EQ(path.exit, 0) << path.err;
   EXPECT_THAT(path.out, HasSubstr("ATE RMSE 0.000"));
 
+  // A sequence is not written into a run.
+  for (const char* command : {"simulate --Trajectory.frames 4 --overwrite", "demo"}) {
+    const Outcome mixed = Pliant(command + (" --output_path '" + out + "'"));
+    EXPECT_EQ(mixed.exit, 2);
+    EXPECT_THAT(mixed.err, HasSubstr("holds a run; give another --output_path"));
+  }
+  const Outcome left_out =
+      Pliant("evaluate --parts surface --tracks '" + sequence + "/times.txt' --sequence '" + sequence + "'");
+  EXPECT_EQ(left_out.exit, 1);
+
   const Outcome none = Pliant(import + "--overwrite --input_path '" + sequence + "/nowhere'");
   EXPECT_EQ(none.exit, 1);
   EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;

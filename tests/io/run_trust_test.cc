@@ -141,7 +141,7 @@ TEST(RunTrust, TellsSeveralMapsApart) {
   summary.first_maps.push_back({50, 60, rigid});
   const auto trust = Trust(summary);
   EXPECT_THAT(trust.at("camera"), HasSubstr("Map 0: the scene deforms"));
-  EXPECT_THAT(trust.at("camera"), HasSubstr("Map 1: the scene was found to be rigid"));
+  EXPECT_THAT(trust.at("camera"), HasSubstr("Map 1: the scene was taken for rigid"));
 }
 
 TEST(RunTrust, MethodsThatMeasureNothingClaimNothing) {

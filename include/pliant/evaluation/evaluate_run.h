@@ -25,7 +25,9 @@ namespace pliant {
 struct OpenedTruth {
   SequenceRequest request;
   std::unique_ptr<Sequence> sequence;
-  Result<std::unique_ptr<MaterialTruth>> material = Status(ErrorCode::kNotFound, "it is not wanted");
+  Result<std::unique_ptr<MaterialTruth>> material =
+      Status(ErrorCode::kInvalidArgument,
+             "a file of tracks is compared by the part tracks, which Evaluation.parts leaves out");
   std::optional<SfmPoints> sfm;  // nothing: the sequence has none, or other parts were asked for by name
 };
 
