@@ -15,11 +15,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "commit.h"  // made by cmake/WriteCommit.cmake
-
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
+#include "commit.h"  // made by cmake/WriteCommit.cmake
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
 #include "pliant/base/version.h"
@@ -81,7 +80,8 @@ int Run(std::span<const std::string> args) {
     return kExitOk;
   }
   if (name == "--version") {
-    std::cout << "pliant " << kVersion << kCommitText << "\nbuilt by " << BuildText() << "\nwith " << LibrariesText() << "\n";
+    std::cout << "pliant " << kVersion << kCommitText << "\nbuilt by " << BuildText() << "\nwith " << LibrariesText()
+              << "\n";
     return kExitOk;
   }
   std::vector<std::string> names;
