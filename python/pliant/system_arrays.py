@@ -6,7 +6,9 @@ from __future__ import annotations
 
 import csv
 import math
+import os
 import pathlib
+import warnings
 from collections.abc import Callable, Iterable
 from collections.abc import Sequence as Several
 from dataclasses import dataclass, field
@@ -22,10 +24,13 @@ if TYPE_CHECKING:
 
     from .jobs import StrPath
 
+TRAJECTORY, OBSERVATIONS = "trajectory.txt", "observations.csv"
 HEADER = "frame,point_id,u_px,v_px,x,y,z"
 # DROID-SLAM and MegaSaM resize images to about this many pixels, and cut them to multiples of 8.
 PIXELS = 384 * 512
 DROID_INTRINSICS = 8  # they are stored for images of an eighth of the size
+# Sides of pixels that differ by more are not square, by less are.
+NOT_SQUARE, SQUARE = 1.25, 1.1
 
 Size = tuple[int, int]  # width, height
 FrameOf = Callable[[int], int]  # the number of the frame of an image by its place among those that a system was given
@@ -151,11 +156,31 @@ def grid_of(shape: Size, size: Size, step_px: int) -> tuple[NDArray[Any], NDArra
     full_width, full_height = resized(size)
     if (full_width // 8 * 8, full_height // 8 * 8) != (width, height):
         raise _error("mismatch", f"its images have {width}x{height} pixels; of {size[0]}x{size[1]} it would have made "
-                                 f"{full_width // 8 * 8}x{full_height // 8 * 8}: is the size right?")
+                                 f"{full_width // 8 * 8}x{full_height // 8 * 8}: is size (width, height) of the "
+                                 "sequence's images?")
     rows, columns = np.mgrid[step_px // 2:height:step_px, step_px // 2:width:step_px].reshape(2, -1)
     u = (columns + 0.5) * size[0] / full_width - 0.5
     v = (rows + 0.5) * size[1] / full_height - 0.5
     return rows, columns, u, v
+
+
+def _checked_intrinsics(name: str, intrinsics: NDArray[Any], shape: Size) -> None:
+    """Refuses fx fy cx cy that are no camera's whose images have this (width, height)."""
+    if not (np.isfinite(intrinsics).all() and (intrinsics[:, :2] > 0).all()):
+        raise _error("mismatch", f"'{name}' has focal lengths that are not above 0, or values that are not finite")
+    if not (np.abs(intrinsics[:, 2:] / shape - 0.5) <= 1).all():
+        raise _error("mismatch", f"'{name}' has principal points far outside of its images of {shape[0]}x{shape[1]} "
+                                 "pixels")
+
+
+def _refuse_turned_size(intrinsics: NDArray[Any], shape: Size, size: Size) -> None:
+    """Refuses a (height, width): pixels of the sequence are not square by it, and would be by (width, height)."""
+    fx, fy = np.median(intrinsics[:, :2], axis=0)
+    ratio = fx / fy * shape[1] / shape[0]
+    off, off_turned = (math.exp(abs(math.log(ratio * w / h))) for w, h in (size, size[::-1]))
+    if off > NOT_SQUARE and off_turned < SQUARE:
+        raise _error("mismatch", f"images of {size[0]}x{size[1]} do not fit the focal lengths in 'intrinsics', and images "
+                                 f"of {size[1]}x{size[0]} do; size is (width, height)")
 
 
 def _dense_points(depths: NDArray[Any], intrinsics: NDArray[Any], poses: NDArray[Any], frames: Iterable[int],
@@ -190,6 +215,7 @@ def _droid(request: _Request) -> Answer:
     if not (np.abs(intrinsics[:, 2] / disparities.shape[2] - 0.5) < 0.25).all():
         raise _error("mismatch", "'intrinsics' is not of images of an eighth of the size of 'disps', as DROID-SLAM "
                                  "stores it")
+    _checked_intrinsics("intrinsics", intrinsics, (disparities.shape[2], disparities.shape[1]))
     with np.errstate(divide="ignore", invalid="ignore"):
         depths = np.where(disparities > 0, 1 / disparities, np.nan)
     found = dict(zip(indices.tolist(), poses))
@@ -215,6 +241,7 @@ def _megasam(request: _Request) -> Answer:
     depths = arrays.get("depths", ("N", "H", "W"))
     k = np.asarray(arrays.get("intrinsic", (3, 3)), float)
     intrinsics = np.tile([k[0, 0], k[1, 1], k[0, 2], k[1, 2]], (len(poses), 1))
+    _checked_intrinsics("intrinsic", intrinsics, (depths.shape[2], depths.shape[1]))
     return (dict(enumerate(poses)),
             lambda frame_of: _dense_points(depths, intrinsics, poses, map(frame_of, range(len(poses))), request))
 
@@ -222,12 +249,18 @@ def _megasam(request: _Request) -> Answer:
 def _tapip3d(request: _Request) -> Answer:
     arrays = _Arrays(pathlib.Path(request.input_path))
     points = np.asarray(arrays.get("coords", ("T", "N", 3)), float)
-    visible = arrays.get("visibs", "TN").astype(bool)
+    visible = arrays.get("visibs", "TN")
+    if not np.isin(visible, (0, 1)).all():
+        raise _error("mismatch", "'visibs' has values other than 0 and 1; save bools, for example visibs > 0.5")
+    visible = visible.astype(bool)
     k = np.asarray(arrays.get("intrinsics", ("T", 3, 3)), float)
     camera_from_world = np.asarray(arrays.get("extrinsics", ("T", 4, 4)), float)
     height, width = arrays.get("video", ("T", 3, "H", "W")).shape[2:]
     if min(height, width) < 2:
         raise _error("mismatch", f"'video' has images of {width}x{height} pixels")
+    intrinsics = np.stack([k[:, 0, 0], k[:, 1, 1], k[:, 0, 2], k[:, 1, 2]], 1)
+    _checked_intrinsics("intrinsics", intrinsics, (width, height))
+    _refuse_turned_size(intrinsics, (width, height), request.size)
     camera = np.einsum("tij,tnj->tni", camera_from_world[:, :3, :3], points) + camera_from_world[:, None, :3, 3]
     with np.errstate(divide="ignore", invalid="ignore"):
         pixels = np.einsum("tij,tnj->tni", k, camera / camera[:, :, 2:])[:, :, :2]
@@ -241,11 +274,12 @@ def _tapip3d(request: _Request) -> Answer:
 
     if request.tracks_path:
         tracks = np.where(np.isfinite(pixels), pixels, 0).astype(np.float32)
-        _write(request.tracks_path, lambda: np.savez(request.tracks_path, tracks=tracks, visibility=seen))
+        _write(request.tracks_path, lambda: _write_tracks(request.tracks_path, tracks, seen))
     return dict(enumerate(_inverse(camera_from_world))), observations
 
 
 SYSTEMS: dict[str, Callable[[_Request], Answer]] = {"droid": _droid, "megasam": _megasam, "tapip3d": _tapip3d}
+SYSTEM_OF = {"path": "droid", "tracks_path": "tapip3d"}  # which alone takes an argument
 
 
 # Output.
@@ -280,10 +314,27 @@ def _write(path: str, write: Callable[[], None]) -> None:
         raise _error("unwritable", f"{path} cannot be written: {reason}") from None
 
 
+def _refuse_other_files(folder: str, tracks_path: str) -> None:
+    """A former result is replaced; files of a run, or of anything else, are not."""
+    try:
+        names = {name for name in os.listdir(folder)
+                 if not (tracks_path and os.path.realpath(os.path.join(folder, name)) == os.path.realpath(tracks_path))}
+    except (OSError, ValueError):  # not there, or not to be written, which is said then
+        return
+    if names - {TRAJECTORY, OBSERVATIONS}:
+        raise ValueError(f"the folder '{folder}' holds files that are not a converted result's, such as "
+                         f"{min(names - {TRAJECTORY, OBSERVATIONS})}; give a new or an empty folder")
+
+
+def _write_tracks(path: str, tracks: NDArray[np.float32], seen: NDArray[np.bool_]) -> None:
+    with open(path, "wb") as file:  # to a path without .npz NumPy appends it
+        np.savez(file, tracks=tracks, visibility=seen)
+
+
 def _write_result(folder: pathlib.Path, lines: list[str], rows: NDArray[Any]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "trajectory.txt").write_text("".join(lines), encoding="utf-8")
-    np.savetxt(folder / "observations.csv", rows, fmt="%d,%d,%.4f,%.4f,%.9g,%.9g,%.9g", header=HEADER, comments="")
+    (folder / TRAJECTORY).write_text("".join(lines), encoding="utf-8")
+    np.savetxt(folder / OBSERVATIONS, rows, fmt="%d,%d,%.4f,%.4f,%.9g,%.9g,%.9g", header=HEADER, comments="")
 
 
 def _size(value: Any) -> Size:
@@ -310,7 +361,8 @@ def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size:
         input_path: of droid the folder that its demo.py --reconstruction_path leaves (tstamps, poses, disps,
             intrinsics .npy), or an .npz of arrays with these names; of megasam SCENE_droid.npz or
             SCENE_sgd_cvd_hr.npz; of tapip3d NAME.result.npz.
-        output_path: folder of the result, made if need be.
+        output_path: folder of the result, made if need be. A former result in it is replaced; a folder with other
+            files, such as a run's, is refused.
         system: droid, megasam or tapip3d.
         size: (width, height) of the images of the sequence, which the system has resized, pixels.
         start, stride: which frames of the sequence the system was given; by default all.
@@ -318,11 +370,12 @@ def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size:
         times: times.txt of the sequence, or frames.csv of a run on it.
         step_px: depth images become one point for this many pixels in both directions.
         path: of droid the array that terminate() returns, saved with np.save: then every frame has a pose.
-        tracks_path: of tapip3d a file (.npz) for the points' pixels, which pliant.track takes as tracks.
+        tracks_path: of tapip3d a file for the points' pixels (in NumPy's format .npz), which pliant.track takes as
+            tracks.
 
     Returns:
         How many "poses" and "points" in how many "frames" were written, and how many poses were "left_out", which are
-        not finite, or no rotation.
+        not finite, or no rotation. That there are no points at all is a UserWarning.
 
     Raises:
         pliant.Error: the arrays are not there, or not those of the system, or nothing can be written.
@@ -336,9 +389,13 @@ def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size:
         raise ValueError(f"fps is {rate}; give a number of frames a second above 0")
     request = _Request(given.path(input_path, "input_path"), _size(size), _at_least(1, step_px, "step_px"),
                        given.optional_path(path, "path"), given.optional_path(tracks_path, "tracks_path"))
+    for name, taker in SYSTEM_OF.items():
+        if getattr(request, name) and system != taker:
+            raise ValueError(f"{name} is for {taker}, and system is {system}; leave it out")
     if request.tracks_path and (start, stride) != (0, 1):
         raise ValueError("tracks are of all frames of the sequence; leave out start and stride, or tracks_path")
     output, times_path = given.path(output_path, "output_path"), given.optional_path(times, "times")
+    _refuse_other_files(output, request.tracks_path)
     poses, observations = SYSTEMS[system](request)
     time = _times_of(times_path, rate)
 
@@ -354,5 +411,8 @@ def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size:
     rows = rows[np.isin(rows[:, 0], list(good))]
     rows = rows[np.lexsort((rows[:, 1], rows[:, 0]))]
     _write(output, lambda: _write_result(pathlib.Path(output), lines, rows))
+    if not len(rows):
+        warnings.warn(f"no point of {request.input_path} is seen in a frame with a pose: the result has the camera path "
+                      "alone", UserWarning, stacklevel=2)
     return {"poses": len(good), "left_out": len(poses) - len(good), "points": len(rows),
             "frames": len(np.unique(rows[:, 0]))}
