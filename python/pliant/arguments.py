@@ -14,8 +14,15 @@ import numpy as np
 from . import _pliant
 
 
-def _wrong(value: Any, name: str, wanted: str) -> TypeError:
+def wrong(value: Any, name: str, wanted: str) -> TypeError:
     return TypeError(f"{name} is a {type(value).__name__}; give {wanted}")
+
+
+def error(code: str, sentence: str) -> _pliant.Error:
+    """As the library raises it."""
+    result = _pliant.Error(sentence)
+    result.code = code
+    return result
 
 
 def whole(value: Any, name: str) -> int:
@@ -25,22 +32,22 @@ def whole(value: Any, name: str) -> int:
     try:
         return operator.index(value)
     except TypeError:
-        raise _wrong(value, name, "a whole number") from None
+        raise wrong(value, name, "a whole number") from None
 
 
 def number(value: Any, name: str) -> float:
     if isinstance(value, (str, bytes)):
-        raise _wrong(value, name, "a number")
+        raise wrong(value, name, "a number")
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise _wrong(value, name, "a number") from None
+        raise wrong(value, name, "a number") from None
 
 
 def numbers(values: Any, name: str) -> list[float]:
     """Of a list, or of an array of one axis."""
     if np.ndim(values) != 1 or isinstance(values, (str, bytes)):
-        raise _wrong(values, name, "a list of numbers, or an array of one axis")
+        raise wrong(values, name, "a list of numbers, or an array of one axis")
     return [number(value, name) for value in values]
 
 
@@ -49,7 +56,7 @@ def wholes(values: Iterable[Any] | None, name: str) -> list[int]:
     if values is None:
         return []
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
-        raise _wrong(values, name, "a list of whole numbers")
+        raise wrong(values, name, "a list of whole numbers")
     chosen = [whole(value, name) for value in values]
     if not chosen:
         raise ValueError(f"{name} has no frame; give numbers of frames, or None")
@@ -58,13 +65,13 @@ def wholes(values: Iterable[Any] | None, name: str) -> list[int]:
 
 def truth(value: Any, name: str) -> bool:
     if not isinstance(value, (bool, np.bool_)):
-        raise _wrong(value, name, "True or False")
+        raise wrong(value, name, "True or False")
     return bool(value)
 
 
 def text(value: Any, name: str) -> str:
     if not isinstance(value, str):
-        raise _wrong(value, name, "text")
+        raise wrong(value, name, "text")
     return value
 
 
@@ -75,7 +82,7 @@ def optional_text(value: Any, name: str) -> str:
 
 def path(value: Any, name: str) -> str:
     if not isinstance(value, (str, os.PathLike)):
-        raise _wrong(value, name, "a path")
+        raise wrong(value, name, "a path")
     return os.fspath(value)
 
 
@@ -87,13 +94,13 @@ def optional_path(value: Any, name: str) -> str:
 def function(value: Any, name: str) -> Callable[..., Any] | None:
     """Or None."""
     if value is not None and not callable(value):
-        raise _wrong(value, name, "a function, or None")
+        raise wrong(value, name, "a function, or None")
     return value
 
 
 def camera(value: Any, name: str = "camera") -> _pliant.Camera:
     if not isinstance(value, _pliant.Camera):
-        raise _wrong(value, name, "a pliant.Camera (pliant.read_camera reads a file)")
+        raise wrong(value, name, "a pliant.Camera (pliant.read_camera reads a file)")
     return value
 
 
@@ -117,6 +124,13 @@ def options_with(values: Any, named: dict[str, str]) -> Any:
     if not named or not (values is None or isinstance(values, dict)):
         return values
     return {**(values or {}), **named}
+
+
+def refuse_both(values: Any, option: str, name: str, value: Any) -> None:
+    """That an argument and an option name two things; a former option of the same text is the same."""
+    other = values.get(option) if isinstance(values, Mapping) else None
+    if value is not None and other and str(other) != str(value):
+        raise ValueError(f"there is the argument {name}, and the option {option} is {str(other)!r}; give one of them")
 
 
 def files(**paths: Any) -> dict[str, str]:

@@ -25,7 +25,7 @@ from .counted_images import counted
 from .extensions import Cost, Initializer, PointFollower, chosen, registered_tracks
 from .run import Run
 from .sequence import Sequence, sequence_request
-from .track_arrays import TrackArrays, are_arrays, are_recorded, file_of, frames_of
+from .track_arrays import TrackArrays, are_arrays, are_recorded, file_of, frames_of, without_path
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,6 +46,14 @@ def _several(paths: Any) -> list[str]:
     if isinstance(paths, (Run, str, os.PathLike)):
         paths = [paths]
     return [_run_path(path) for path in paths]
+
+
+def _replace_text(path: str, text: str) -> None:
+    try:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise given.error("unwritable", f"{path} cannot be written: {error.strerror}") from None
 
 
 def read_camera(path: StrPath) -> _pliant.Camera:
@@ -242,6 +250,9 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
     if resume and are_arrays(tracks):
         raise ValueError("a run with arrays of tracks cannot be resumed; save them with np.savez(path, tracks=tracks, "
                          "visibility=visibility), and give the path")
+    if are_recorded(tracks):
+        given.refuse_both(options, "TrackFile.path", "tracks", "arrays" if are_arrays(tracks) else tracks)
+    given.refuse_both(options, "DepthPrior.path", "depth_prior", depth_prior)
     with file_of(tracks if are_recorded(tracks) else None) as track_file:
         values = given.options_with(options, {
             "TrackFile.path": track_file,
@@ -344,7 +355,7 @@ def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: Op
         on_progress: called with what is done ("evaluate", for example), how much of it is done, and how much there is.
 
     Returns:
-        evaluation.json; docs/formats.md has its names. NaN is None.
+        evaluation.json; docs/formats.md has its names. NaN is None. Each of its notes is a UserWarning, too.
     """
     others = _several(other_runs)
     if (run is None) == (tracks is None):
@@ -356,8 +367,17 @@ def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: Op
     request = {"run_path": "" if run is None else _run_path(run), "other_runs": others,
                "tracks_pixel_origin": given.text(tracks_pixel_origin, "tracks_pixel_origin"),
                **given.files(sequence=sequence, camera=camera, sfm=sfm_path, surface=surface_path, output=output_path)}
-    with file_of(tracks) as request["tracks_path"]:
-        return json.loads(_pliant.evaluate(request, given.options(options), given.function(on_progress, "on_progress")))
+    with file_of(tracks) as track_file:
+        request["tracks_path"] = track_file
+        text = _pliant.evaluate(request, given.options(options), given.function(on_progress, "on_progress"))
+    if are_arrays(tracks):
+        text = without_path(text, json.dumps(track_file, ensure_ascii=False)[1:-1])
+        if output_path is not None:
+            _replace_text(os.path.join(output_path, "evaluation.json"), text)
+    evaluation = json.loads(text)
+    for note in evaluation["notes"]:
+        warnings.warn(note, UserWarning, stacklevel=2)
+    return evaluation
 
 
 def evaluate_stir(tracked: StrPath, start: StrPath, end: StrPath, *,

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _pliant
 from . import arguments as given
+from .arguments import error as _error
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -45,12 +45,6 @@ class _Request:
     step_px: int
     path: str
     tracks_path: str
-
-
-def _error(code: str, sentence: str) -> _pliant.Error:
-    error = _pliant.Error(sentence)
-    error.code = code
-    return error
 
 
 def _numbers_of(name: str, load: Callable[[], Any]) -> NDArray[Any]:
