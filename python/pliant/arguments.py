@@ -63,6 +63,21 @@ def wholes(values: Iterable[Any] | None, name: str) -> list[int]:
     return chosen
 
 
+def several(values: Any, name: str, wanted: str) -> list[Any]:
+    if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
+        raise wrong(values, name, wanted)
+    return list(values)
+
+
+def images(value: Any) -> Any:
+    """What images can be taken from."""
+    can_index = hasattr(value, "__len__") and hasattr(value, "__getitem__")
+    is_number = isinstance(value, np.ndarray) and value.ndim == 0
+    if is_number or isinstance(value, (bytes, bytearray)) or not (can_index or isinstance(value, Iterable)):
+        raise wrong(value, "input", "a path, a pliant.Sequence, or a list, an array or another iterable of images")
+    return value
+
+
 def truth(value: Any, name: str) -> bool:
     if not isinstance(value, (bool, np.bool_)):
         raise wrong(value, name, "True or False")

@@ -38,8 +38,11 @@ class CountedImages:
 
 
 def counted(images: Any, count: int, what: str) -> Any:
-    """The images with a length, where they have none themselves; with a count of 0 as they are."""
-    has_length = hasattr(images, "__len__") and hasattr(images, "__getitem__")
-    if count == 0 or has_length or not isinstance(images, Iterable):
+    """The images with a length, where they have none themselves. Raises ValueError where there are not as many."""
+    if hasattr(images, "__len__") and hasattr(images, "__getitem__"):
+        if len(images) not in (0, count):  # none at all are refused where they are read
+            raise ValueError(f"there are {count} {what} for {len(images)} images; each image needs one")
         return images
+    if count == 0:
+        raise ValueError(f"there are 0 {what}; each image needs one")
     return CountedImages(images, count, what)

@@ -41,11 +41,17 @@ def _run_path(run: RunOrPath) -> str:
     return given.path(run.folder if isinstance(run, Run) else run, "run")
 
 
-def _several(paths: Any) -> list[str]:
+def _several(paths: Any, name: str) -> list[str]:
     """The run or the path, or those of a list."""
     if isinstance(paths, (Run, str, os.PathLike)):
         paths = [paths]
-    return [_run_path(path) for path in paths]
+    return [_run_path(path) for path in given.several(paths, name, "a run or its folder, or a list of them")]
+
+
+def _refuse_same(runs: list[str], output_path: str, made: str) -> None:
+    for run in runs:
+        if os.path.exists(run) and os.path.realpath(run) == os.path.realpath(output_path):
+            raise ValueError(f"the {made} run would overwrite the run '{run}'; give another output_path")
 
 
 def _replace_text(path: str, text: str) -> None:
@@ -241,11 +247,14 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
     else:
         if resume:
             raise ValueError("images that are given do not come again, so such a run cannot be resumed; give a path")
+        images = given.images(images)
         if not isinstance(camera, _pliant.Camera):
             raise ValueError("images need their camera; give a pliant.Camera (pliant.read_camera reads a file)")
         times = [] if timestamps is None else given.numbers(timestamps, "timestamps")
-        images = counted(images, len(times), "timestamps")
-        images = counted(images, frames_of(tracks), "frames of tracks")
+        if timestamps is not None:
+            images = counted(images, len(times), "timestamps")
+        if are_arrays(tracks) and (frames := frames_of(tracks)):
+            images = counted(images, frames, "frames of tracks")
         request.update(images=images, camera=camera, timestamps=times)
     if resume and are_arrays(tracks):
         raise ValueError("a run with arrays of tracks cannot be resumed; save them with np.savez(path, tracks=tracks, "
@@ -280,8 +289,9 @@ def refine(run: RunOrPath, output_path: StrPath, options: OptionValues | None = 
     Returns:
         The refined run.
     """
-    request = {"run_path": _run_path(run), "output_path": given.path(output_path, "output_path"),
-               **given.files(sequence=sequence, camera=camera)}
+    request: dict[str, str] = {"run_path": _run_path(run), "output_path": given.path(output_path, "output_path"),
+                               **given.files(sequence=sequence, camera=camera)}
+    _refuse_same([request["run_path"]], request["output_path"], "refined")
     _pliant.refine(request, given.options(options), given.function(on_progress, "on_progress"))
     return Run(output_path)
 
@@ -301,8 +311,10 @@ def join(runs: Any, output_path: StrPath, options: OptionValues | None = None, *
     Returns:
         The joined run.
     """
-    request = {"run_paths": _several(runs), "output_path": given.path(output_path, "output_path"),
-               **given.files(sequence=sequence, camera=camera)}
+    request: dict[str, Any] = {"run_paths": _several(runs, "runs"),
+                               "output_path": given.path(output_path, "output_path"),
+                               **given.files(sequence=sequence, camera=camera)}
+    _refuse_same(request["run_paths"], request["output_path"], "joined")
     for joint in _pliant.join(request, given.options(options), given.function(on_progress, "on_progress")):
         if joint["failure"]:
             warnings.warn(f"{joint['run']} is not joined to {joint['before']}: {joint['failure']}", stacklevel=2)
@@ -357,7 +369,7 @@ def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: Op
     Returns:
         evaluation.json; docs/formats.md has its names. NaN is None. Each of its notes is a UserWarning, too.
     """
-    others = _several(other_runs)
+    others = _several(other_runs, "other_runs")
     if (run is None) == (tracks is None):
         raise ValueError("a run or tracks are evaluated, one at a time; give one of them")
     if tracks is not None and sequence is None:
@@ -426,9 +438,10 @@ def compare(runs: Any, sequence: StrPath | Iterable[StrPath] | None = None, opti
         ValueError: there is no run, or one alone without a sequence, or there are neither one sequence nor as many as
             runs.
     """
-    sequences = [sequence] if isinstance(sequence, (str, os.PathLike)) else list(sequence or [])
-    request: dict[str, Any] = {"run_paths": _several(runs),
-                               "sequence_paths": [given.path(path, "sequence") for path in sequences],
+    sequences: Any = [sequence] if isinstance(sequence, (str, os.PathLike)) else () if sequence is None else sequence
+    request: dict[str, Any] = {"run_paths": _several(runs, "runs"),
+                               "sequence_paths": [given.path(path, "sequence") for path in given.several(
+                                   sequences, "sequence", "a path, or a list with one for each run")],
                                **given.files(camera=camera, output=output_path, figure=figure)}
     return json.loads(_pliant.compare(request, given.options(options), given.function(on_progress, "on_progress")))
 
@@ -494,7 +507,10 @@ def report(runs: Any, output_path: StrPath, options: OptionValues | None = None,
     Returns:
         What is missing or left out, a sentence each.
     """
-    request = {"run_paths": _several(runs), "surface_paths": _several(surface_paths),
+    request = {"run_paths": _several(runs, "runs"),
+               "surface_paths": [given.path(path, "surface_paths") for path in given.several(
+                   [surface_paths] if isinstance(surface_paths, (str, os.PathLike)) else surface_paths,
+                   "surface_paths", "a surface folder, or a list of them")],
                "output_path": given.path(output_path, "output_path"), **given.files(sequence=sequence, camera=camera)}
     return _pliant.report(request, given.wholes(figure, "figure"), given.options(options),
                           given.function(on_progress, "on_progress"))

@@ -33,10 +33,10 @@ class Run:
     """
 
     def __init__(self, path: str | os.PathLike[str]):
-        self.folder = Path(path)
+        self.folder = Path(given.path(path, "path"))
         self.frames: Frames
         self.poses: Poses
-        self.frames, self.poses = _pliant.read_run(os.fspath(path))
+        self.frames, self.poses = _pliant.read_run(os.fspath(self.folder))
 
     def __repr__(self) -> str:
         return f"<pliant.Run {os.fspath(self.folder)}: {len(self.poses)} of {len(self.frames)} frames have a pose>"

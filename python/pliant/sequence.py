@@ -69,8 +69,11 @@ class Sequence:
 
 def sequence_request(mask_path: StrPath | None, start: int, end: int | None, stride: int) -> dict[str, Any]:
     """What the library is asked for beside the images and their camera."""
-    return {"start": given.whole(start, "start"), "end": -1 if end is None else given.whole(end, "end"),
-            "stride": given.whole(stride, "stride"), **given.files(mask=mask_path)}
+    first, last = given.whole(start, "start"), None if end is None else given.whole(end, "end")
+    if last is not None and last <= first:
+        raise ValueError(f"end is {last} and start is {first}; end is one past the last frame, or None for all")
+    return {"start": first, "end": -1 if last is None else last, "stride": given.whole(stride, "stride"),
+            **given.files(mask=mask_path)}
 
 
 def open_sequence(path: StrPath, *, camera: StrPath | None = None, mask_path: StrPath | None = None, start: int = 0,

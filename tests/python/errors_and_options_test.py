@@ -63,6 +63,18 @@ class Arguments(TestCase):
                      timestamps=["a"] * 3)
         self.refused("apart, as nanoseconds would be; give seconds", pliant.track, [image] * 3, out, camera=camera,
                      timestamps=1403636579763555584 + 33333333 * np.arange(3))
+        for value in (3, None, b"colon", np.array(3)):
+            self.refused("give a path, a pliant.Sequence, or a list, an array or another iterable of images",
+                         pliant.track, value, out)
+        for given in ([image] * 3, (image for _ in range(3))):
+            self.refused("there are 0 timestamps", pliant.track, given, out, camera=camera, timestamps=[])
+        for given in ([image] * 3, np.array([image] * 3)):
+            self.refused("there are 4 timestamps for 3 images; each image needs one", pliant.track, given, out,
+                         camera=camera, timestamps=np.arange(4) / 30)
+        for end in (5, 10, -1):
+            self.refused(f"end is {end} and start is 10; end is one past the last frame, or None for all", pliant.track,
+                         SEQUENCE, out, start=10, end=end)
+        self.refused("end is one past the last frame, or None for all", pliant.open_sequence, SEQUENCE, end=0)
         self.refused("camera is a NoneType; give a pliant.Camera", pliant.Tracker, None)
         self.refused("examples is a NoneType", pliant.Tracker, camera, examples=None)
         sequence = pliant.open_sequence(SEQUENCE)
@@ -98,6 +110,17 @@ class Arguments(TestCase):
             self.refused(f"{name} is ", pliant.convert_arrays, "a.npz", out, "megasam", **arguments)
         self.refused("leave out start and stride", pliant.convert_arrays, "a.npz", out, "tapip3d", (640, 480), stride=2,
                      tracks_path="b.npz")
+        for call, named in ((pliant.compare, {}), (pliant.join, {"output_path": out}), (pliant.report, {"output_path": out})):
+            for value in (5, None, b"run"):
+                self.refused(f"runs is a {type(value).__name__}; give a run or its folder, or a list of them", call, value,
+                             **named)
+        self.refused("other_runs is a int; give a run or its folder", pliant.evaluate, RUN, SEQUENCE, other_runs=5)
+        self.refused("sequence is a int; give a path, or a list", pliant.compare, [RUN], 3)
+        self.refused("surface_paths is a int; give a surface folder", pliant.report, RUN, out, surface_paths=3)
+        for value in (3, None, b"run"):
+            self.refused(f"path is a {type(value).__name__}; give a path", pliant.open_run, value)
+        for call, run in ((pliant.refine, RUN), (pliant.join, [RUN, RUN])):
+            self.refused(f"run would overwrite the run '{RUN}'; give another output_path", call, run, RUN / ".")
         self.refused("board is a NoneType; give text", pliant.calibrate, SEQUENCE, None, out)
         self.refused("frames is a str; give a list of whole numbers", pliant.surface, RUN, out, frames="12")
         self.refused("frames is a float; give a whole number", pliant.surface, RUN, out, frames=[1.9])

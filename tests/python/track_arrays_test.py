@@ -58,10 +58,11 @@ class Arrays(TestCase):
                             for name, given in (("list", frames), ("iterated", (image for image in frames))))
         self.same(iterated, listed)
         turned = np.ascontiguousarray(tracks.transpose(1, 0, 2)), np.ascontiguousarray(seen.T)
-        with self.assertRaises(ValueError) as caught:
-            pliant.track((image for image in frames), self.folder / "turned", OPTIONS, camera=camera, tracks=turned)
-        self.assertEqual(sentence(self, caught.exception),
-                         f"there are {tracks.shape[1]} frames of tracks for {FRAMES} images; each image needs one")
+        for given in (frames, (image for image in frames)):
+            with self.assertRaises(ValueError) as caught:
+                pliant.track(given, self.folder / "turned", OPTIONS, camera=camera, tracks=turned)
+            self.assertEqual(sentence(self, caught.exception),
+                             f"there are {tracks.shape[1]} frames of tracks for {FRAMES} images; each image needs one")
 
     def test_they_are_scored_as_their_file_is(self):
         file = pliant.evaluate(None, SEQUENCE, tracks=self.folder / "exported" / "tracks.npz")["tracks"]

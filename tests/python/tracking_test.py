@@ -191,7 +191,7 @@ class Images(TestCase):
             self.assertIn(words, sentence(self, caught.exception))
         with self.assertRaises(TypeError):
             pliant.track(7, self.folder / "run", camera=self.camera)
-        with self.assertRaises(pliant.Error) as caught:
+        with self.assertRaises(ValueError) as caught:
             pliant.track(self.images, self.folder / "run", camera=self.camera, timestamps=[0.0, 1.0])
         self.assertIn("there are 2 timestamps for 25 images", sentence(self, caught.exception))
         with self.assertRaisesRegex(TypeError, "timestamps is a generator; give a list of numbers"):
