@@ -4,7 +4,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Optional, Union
+from typing import Any, Optional, SupportsFloat, SupportsIndex, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,9 @@ class Error(RuntimeError):
     code: str
 
 class Camera:
-    def __init__(self, model: str, width: int, height: int, params: Sequence[float], *,
-                 fps: Optional[float] = None) -> None: ...
+    def __init__(self, model: str, width: SupportsIndex, height: SupportsIndex,
+                 params: Union[Sequence[SupportsFloat], NDArray[Any]], *,
+                 fps: Optional[SupportsFloat] = None) -> None: ...
     @property
     def model(self) -> str: ...
     @property
@@ -80,7 +81,7 @@ class Tracker:
     @property
     def working_scale(self) -> float: ...
     def process(self, image: NDArray[np.uint8], mask: Optional[NDArray[Any]] = None,
-                timestamp: Optional[float] = None,
+                timestamp: Optional[SupportsFloat] = None,
                 depth_prior: Optional[NDArray[np.floating[Any]]] = None) -> list[FrameReport]: ...
     def finish(self) -> list[FrameReport]: ...
 

@@ -6,12 +6,19 @@ from __future__ import annotations
 
 import operator
 import os
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, SupportsFloat, SupportsIndex, Union
 
 import numpy as np
 
 from . import _pliant
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+# As callers may give them, also NumPy's.
+Wholes = Union["Sequence[SupportsIndex]", "NDArray[Any]"]
+Numbers = Union["Sequence[SupportsFloat]", "NDArray[Any]"]
 
 
 def wrong(value: Any, name: str, wanted: str) -> TypeError:

@@ -15,9 +15,8 @@ import json
 import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping
-from collections.abc import Sequence as Several
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, SupportsIndex, Union
 
 from . import _pliant
 from . import arguments as given
@@ -182,8 +181,9 @@ def simulate(output_path: StrPath, options: OptionValues | None = None, *, reali
 
 def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: StrPath,
           options: OptionValues | None = None, *, camera: StrPath | _pliant.Camera | None = None,
-          timestamps: Several[float] | None = None, preset: str = "default", mask_path: StrPath | None = None,
-          start: int = 0, end: int | None = None, stride: int = 1, initializer: Initializer | str | None = None,
+          timestamps: given.Numbers | None = None, preset: str = "default", mask_path: StrPath | None = None,
+          start: SupportsIndex = 0, end: SupportsIndex | None = None, stride: SupportsIndex = 1,
+          initializer: Initializer | str | None = None,
           tracks: PointFollower | StrPath | TrackArrays | None = None, tracks_pixel_origin: str | None = None,
           cost: Cost | str | None = None, depth_prior: StrPath | None = None, resume: bool = False,
           on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
@@ -322,7 +322,7 @@ def join(runs: Any, output_path: StrPath, options: OptionValues | None = None, *
 
 
 def surface(run: RunOrPath, output_path: StrPath, options: OptionValues | None = None, *,
-            frames: Several[int] | None = None, sequence: StrPath | None = None, camera: StrPath | None = None,
+            frames: given.Wholes | None = None, sequence: StrPath | None = None, camera: StrPath | None = None,
             mask_path: StrPath | None = None,
             on_progress: Callable[[str, int, int], Any] | None = None) -> dict[str, Any]:
     """Dense depth of the frames of a run, and a mesh that moves with the tissue (docs/formats.md).
@@ -490,7 +490,7 @@ def export(run: RunOrPath, output_path: StrPath, format: str = "canonical", opti
     return _pliant.export(request, given.options(options), given.function(on_progress, "on_progress"))
 
 
-def report(runs: Any, output_path: StrPath, options: OptionValues | None = None, *, figure: Several[int] | None = None,
+def report(runs: Any, output_path: StrPath, options: OptionValues | None = None, *, figure: given.Wholes | None = None,
            sequence: StrPath | None = None, camera: StrPath | None = None, surface_paths: Any = (),
            on_progress: JobProgress | None = None) -> list[str]:
     """Shows runs: a page for the browser (.html), with `figure` a still (.png, .svg or .pdf), or a film (.mp4).

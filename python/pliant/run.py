@@ -8,7 +8,7 @@ import json
 import os
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsIndex
 
 import numpy as np
 
@@ -76,7 +76,7 @@ class Run:
         """The undeformed map; empty where a killed run, or another program's, has none."""
         return self._map[2]
 
-    def frame(self, frame_idx: int) -> Observations:
+    def frame(self, frame_idx: SupportsIndex) -> Observations:
         """The points of the frame with this number, sorted by point_id; views, not copies; none where
         it has none."""
         column, wanted = self.observations.frame_idx, given.whole(frame_idx, "frame_idx")
@@ -85,7 +85,7 @@ class Run:
         first, last = np.searchsorted(column, np.array([wanted, wanted + 1], column.dtype))  # no copy of it
         return self.observations[first:last]
 
-    def path(self, point_id: int) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    def path(self, point_id: SupportsIndex) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
         """The way of a point: numbers of the frames that have it (n,), and its positions in them (n, 3), world frame of
         each frame's map, map units; views, of one copy of these columns in the order of the points."""
         ids, frame_idx, position = self._by_point

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex
 
 import numpy as np
 
@@ -58,16 +58,17 @@ class Sequence:
         while (frame := reader.next()) is not None:
             yield SequenceFrame(*frame)
 
-    def depth(self, frame_idx: int) -> NDArray[np.float32] | None:
+    def depth(self, frame_idx: SupportsIndex) -> NDArray[np.float32] | None:
         """(height, width), z along the optical axis in mm, 0: none there; None where the sequence has no depth."""
         return self._source.depth(given.whole(frame_idx, "frame_idx"))
 
-    def world_from_cam(self, frame_idx: int) -> NDArray[np.float64] | None:
+    def world_from_cam(self, frame_idx: SupportsIndex) -> NDArray[np.float64] | None:
         """(4, 4), the true pose; None where the sequence has none."""
         return self._source.world_from_cam(given.whole(frame_idx, "frame_idx"))
 
 
-def sequence_request(mask_path: StrPath | None, start: int, end: int | None, stride: int) -> dict[str, Any]:
+def sequence_request(mask_path: StrPath | None, start: SupportsIndex, end: SupportsIndex | None,
+                     stride: SupportsIndex) -> dict[str, Any]:
     """What the library is asked for beside the images and their camera."""
     first, last = given.whole(start, "start"), None if end is None else given.whole(end, "end")
     if last is not None and last <= first:
@@ -76,8 +77,9 @@ def sequence_request(mask_path: StrPath | None, start: int, end: int | None, str
             **given.files(mask=mask_path)}
 
 
-def open_sequence(path: StrPath, *, camera: StrPath | None = None, mask_path: StrPath | None = None, start: int = 0,
-                  end: int | None = None, stride: int = 1) -> Sequence:
+def open_sequence(path: StrPath, *, camera: StrPath | None = None, mask_path: StrPath | None = None,
+                  start: SupportsIndex = 0, end: SupportsIndex | None = None,
+                  stride: SupportsIndex = 1) -> Sequence:
     """A folder of images, a video or a data set (docs/datasets.md), read as pliant.track reads it.
 
     Args:

@@ -10,9 +10,8 @@ import os
 import pathlib
 import warnings
 from collections.abc import Callable, Iterable
-from collections.abc import Sequence as Several
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsFloat, SupportsIndex
 
 import numpy as np
 
@@ -173,8 +172,8 @@ def _refuse_turned_size(intrinsics: NDArray[Any], shape: Size, size: Size) -> No
     ratio = fx / fy * shape[1] / shape[0]
     off, off_turned = (math.exp(abs(math.log(ratio * w / h))) for w, h in (size, size[::-1]))
     if off > NOT_SQUARE and off_turned < SQUARE:
-        raise _error("mismatch", f"images of {size[0]}x{size[1]} do not fit the focal lengths in 'intrinsics', and images "
-                                 f"of {size[1]}x{size[0]} do; size is (width, height)")
+        raise _error("mismatch", f"images of {size[0]}x{size[1]} do not fit the focal lengths in 'intrinsics', and "
+                                 f"images of {size[1]}x{size[0]} do; size is (width, height)")
 
 
 def _dense_points(depths: NDArray[Any], intrinsics: NDArray[Any], poses: NDArray[Any], frames: Iterable[int],
@@ -345,8 +344,9 @@ def _at_least(least: int, value: Any, name: str) -> int:
     return number
 
 
-def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size: Several[int], *, start: int = 0,
-                   stride: int = 1, fps: float = 30.0, times: StrPath | None = None, step_px: int = 8,
+def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size: given.Wholes, *,
+                   start: SupportsIndex = 0, stride: SupportsIndex = 1, fps: SupportsFloat = 30.0,
+                   times: StrPath | None = None, step_px: SupportsIndex = 8,
                    path: StrPath | None = None, tracks_path: StrPath | None = None) -> dict[str, int]:
     """Writes the arrays of DROID-SLAM, MegaSaM or TAPIP3D as a result (docs/exchange.md), which
     pliant.import_result(..., format="result") makes a run.
@@ -377,7 +377,7 @@ def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size:
     """
     if given.text(system, "system") not in SYSTEMS:
         raise ValueError(f"system is '{system}'; give {', '.join(SYSTEMS)}")
-    start, stride = _at_least(0, start, "start"), _at_least(1, stride, "stride")
+    first, every = _at_least(0, start, "start"), _at_least(1, stride, "stride")
     rate = given.number(fps, "fps")
     if not (math.isfinite(rate) and rate > 0):
         raise ValueError(f"fps is {rate}; give a number of frames a second above 0")
@@ -386,7 +386,7 @@ def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size:
     for name, taker in SYSTEM_OF.items():
         if getattr(request, name) and system != taker:
             raise ValueError(f"{name} is for {taker}, and system is {system}; leave it out")
-    if request.tracks_path and (start, stride) != (0, 1):
+    if request.tracks_path and (first, every) != (0, 1):
         raise ValueError("tracks are of all frames of the sequence; leave out start and stride, or tracks_path")
     output, times_path = given.path(output_path, "output_path"), given.optional_path(times, "times")
     _refuse_other_files(output, request.tracks_path)
@@ -394,7 +394,7 @@ def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size:
     time = _times_of(times_path, rate)
 
     def frame_of(place: int) -> int:
-        return start + stride * int(place)
+        return first + every * int(place)
 
     good = {frame_of(place): pose for place, pose in sorted(poses.items()) if _is_pose(pose)}
     if not good:
@@ -406,7 +406,7 @@ def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size:
     rows = rows[np.lexsort((rows[:, 1], rows[:, 0]))]
     _write(output, lambda: _write_result(pathlib.Path(output), lines, rows))
     if not len(rows):
-        warnings.warn(f"no point of {request.input_path} is seen in a frame with a pose: the result has the camera path "
-                      "alone", UserWarning, stacklevel=2)
+        warnings.warn(f"no point of {request.input_path} is seen in a frame with a pose: the result has the camera "
+                      "path alone", UserWarning, stacklevel=2)
     return {"poses": len(good), "left_out": len(poses) - len(good), "points": len(rows),
             "frames": len(np.unique(rows[:, 0]))}

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Union
 
@@ -18,7 +18,7 @@ from . import arguments as given
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-TrackArrays = Union["tuple[ArrayLike, ArrayLike]", "Mapping[str, ArrayLike]"]
+TrackArrays = Union["Sequence[ArrayLike]", "Mapping[str, ArrayLike]"]  # of two: tracks and visibility
 ARRAYS = ("tracks", "visibility", "sigma_px", "track_id")
 WANTED = "give a pair (tracks, visibility), (frames, points, 2) and (frames, points)"
 FILE_NAME = "given_arrays.npz"  # run.json and config.yaml name it

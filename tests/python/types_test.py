@@ -19,11 +19,27 @@ from pliant import _pliant
 
 ROOT = pathlib.Path(sys.argv.pop())
 SKIPPED = 77
-RIGHT = """import pliant
+RIGHT = """import numpy as np
+import pliant
 run = pliant.track("colon", "run", {"General.seed": 3}, end=40)
 print(run.poses.world_from_cam.shape, pliant.evaluate(run, "colon")["surface"])
+three = np.int64(3)
+camera = pliant.Camera("PINHOLE", 640, np.int64(480), np.array([400, 400, 320, 240]), fps=np.float64(30))
+images, tracks, seen = np.zeros((3, 480, 640), np.uint8), np.zeros((3, 9, 2)), np.ones((3, 9), bool)
+pair = [tracks, seen]
+pliant.track(images, "run", camera=camera, timestamps=np.arange(3) / 30.0, tracks=[tracks, seen])
+pliant.track(images, "run", camera=camera, timestamps=[0, np.float64(0.1), 0.2], tracks=pair)
+pliant.track("colon", "run", start=three, end=np.int32(9), stride=three, tracks=(tracks, seen.tolist()))
+pliant.evaluate(None, "colon", tracks={"tracks": tracks, "visibility": seen})
+pliant.evaluate(None, "colon", tracks=np.load("tracks.npz"))
+pliant.convert_arrays("a.npz", "result", "droid", np.array([640, 480]), start=three, fps=np.float32(30), step_px=three)
+pliant.surface(run, "surface", frames=np.array([20, 40]))
+pliant.report(run, "still.png", figure=[three])
+pliant.open_sequence("colon", end=three).depth(three)
+print(run.frame(three), run.path(np.int64(7)))
+pliant.Tracker(camera, examples=images).process(images[0], timestamp=np.float64(1))
 """
-WRONG = RIGHT + 'pliant.track("colon", "run", stop=40)\nrun.pose\n'
+WRONG = RIGHT + 'pliant.track("colon", "run", stop=40)\nrun.pose\npliant.track("colon", "run", start="3")\n'
 
 
 def names_of(body):
@@ -54,7 +70,7 @@ class Types(unittest.TestCase):
 
     def test_a_program_is_checked_by_them(self):
         with tempfile.TemporaryDirectory() as folder:
-            for name, program, wrong in (("right.py", RIGHT, []), ("wrong.py", WRONG, [4, 5])):
+            for name, program, wrong in (("right.py", RIGHT, []), ("wrong.py", WRONG, [len(RIGHT.splitlines()) + i for i in (1, 2, 3)])):
                 file = pathlib.Path(folder) / name
                 file.write_text(program)
                 _, said = self.mypy(file)
