@@ -21,6 +21,7 @@ PYTHONPATH=build/release/python that of the build tree.
 
 import argparse
 import sys
+import warnings
 
 import pliant
 from pliant.system_arrays import SYSTEMS
@@ -48,15 +49,19 @@ def main():
     parser.add_argument("--tracks", help="tapip3d: file to write, .npz")
     arguments = parser.parse_args()
     try:
-        written = pliant.convert_arrays(
-            arguments.input, arguments.output_path, arguments.system, arguments.size, start=arguments.start,
-            stride=arguments.stride, fps=arguments.fps, times=arguments.times, step_px=arguments.step,
-            path=arguments.path, tracks_path=arguments.tracks)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UserWarning)
+            written = pliant.convert_arrays(
+                arguments.input, arguments.output_path, arguments.system, arguments.size, start=arguments.start,
+                stride=arguments.stride, fps=arguments.fps, times=arguments.times, step_px=arguments.step,
+                path=arguments.path, tracks_path=arguments.tracks)
     except ValueError as error:
         parser.error(str(error))
     except pliant.Error as error:
         print(f"import_arrays.py: {error}", file=sys.stderr)
         return 1
+    for warning in caught:
+        print(f"import_arrays.py: {warning.message}", file=sys.stderr)
     left_out = f" ({written['left_out']} left out: not finite, or not a rotation)" if written["left_out"] else ""
     print(f"{written['poses']} poses{left_out}, {written['points']} points in {written['frames']} frames")
     return 0

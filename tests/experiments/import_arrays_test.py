@@ -282,6 +282,11 @@ def arrays_complaints(folder):
     fails("not (frames, 7)", *droid(), "--path", folder / "one.npy")
     fails("not of images of an eighth of the size", *droid(intrinsics=8 * good_droid()["intrinsics"]))
     fails("'tstamps' has values that are no numbers of frames", *droid(tstamps=np.array([0, np.nan])))
+    hidden = saved(folder / "t.npz", good_tapip3d(), visibs=np.zeros((2, 5), bool))
+    code, said, complaint = run("tapip3d", hidden, *SIZE, "--output_path", folder / "hidden")
+    assert (code, said) == (0, "2 poses, 0 points in 0 frames\n"), (code, said)
+    assert complaint == (f"import_arrays.py: no point of {hidden} is seen in a frame with a pose: the result has the camera "
+                         "path alone\n"), complaint
     video = saved(folder / "t.npz", good_tapip3d(), video=np.zeros((2, 3, 1, 1)))
     fails("'video' has images of 1x1 pixels", "tapip3d", video, *SIZE)
 
@@ -346,6 +351,8 @@ def arrays_usage(folder):
             words = f"error: {flag[2:]}" if value in wrong else f"argument {flag}: "
             assert code == 2 and words in complaint.splitlines()[-1], complaint
     assert not (folder / "result").exists()
+    code, _, complaint = run("megasam", file, *SIZE, "--output_path", folder)
+    assert code == 2 and "holds files that are not a converted result's" in complaint.splitlines()[-1], complaint
 
 
 main(arrays_droid, arrays_megasam, arrays_tapip3d, orb_slam3_path, arrays_pixels, arrays_times, arrays_complaints,
