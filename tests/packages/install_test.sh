@@ -79,6 +79,17 @@ print(pliant.__version__, pliant.__file__, run)
 pliant.simulate("/tmp/from_python", {"Trajectory.frames": 2})
 '
 
+# Its own tests, on a sequence and a run as those of tests/e2e: nothing of the build tree is here.
+cp -r "$source/tests/python" "$root/tmp/tests"
+inside pliant simulate --quiet --output_path /tmp/rigid --Trajectory.frames 60
+inside pliant track /tmp/rigid --quiet --output_path /tmp/rigid_run
+for test in "$root"/tmp/tests/{camera,convert_arrays,cost,errors_and_options,extensions,jobs,kernels,reading,sequence,track_arrays,tracking}_test.py; do
+  name=$(basename "$test")
+  inside env PLIANT_TEST_SEQUENCE=/tmp/rigid PLIANT_TEST_RUN=/tmp/rigid_run python3 -B "/tmp/tests/$name" \
+    >"$root/tmp/test.log" 2>&1 || { tail -n 30 "$root/tmp/test.log"; exit 1; }
+  echo "$name: $(grep -E '^Ran ' "$root/tmp/test.log")"
+done
+
 say "libpliant-dev"
 install "$(package libpliant-dev)" cmake g++ make
 cp -r "$source/tests/consumer/project" "$root/tmp/project"
