@@ -105,7 +105,9 @@ Status CheckPixels(const std::string& path, TrackFile* file) {
     }
   if (!seen)
     return {ErrorCode::kInsufficient, Quoted(path) + " has no point that is seen in a frame" +
-                                          (file->frames ? ": all of its visibility is False" : "")};
+                                          (file->tracks.empty() ? ": it has no track"
+                                           : file->frames       ? ": all of its visibility is False"
+                                                                : "")};
   if (whole)
     file->notes.push_back("the pixels in " + Quoted(path) +
                           " are whole numbers: rounded pixels are off by 0.29 px, root mean square; give fractions "

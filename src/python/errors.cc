@@ -3,6 +3,10 @@
 
 #include "python/errors.h"
 
+#include <cctype>
+#include <cstddef>
+#include <string_view>
+
 #include <pybind11/pybind11.h>
 
 #include "python/bind.h"
@@ -39,6 +43,19 @@ const char* CodeName(ErrorCode code) {
   return "unknown";
 }
 
+// Arguments and options as Python has them: the sentences are also the program's, where these are flags ("--sequence").
+std::string WithoutDashes(std::string_view sentence) {
+  std::string text;
+  for (std::size_t i = 0; i < sentence.size(); ++i) {
+    const bool begins_word = i == 0 || sentence[i - 1] == ' ' || sentence[i - 1] == '(';
+    const bool is_flag = begins_word && sentence.substr(i).starts_with("--") && i + 2 < sentence.size() &&
+                         std::isalpha(static_cast<unsigned char>(sentence[i + 2])) != 0;
+    if (is_flag) i += 2;
+    text += sentence[i];
+  }
+  return text;
+}
+
 }  // namespace
 
 void BindErrors(py::module_& module) {
@@ -54,8 +71,9 @@ void BindErrors(py::module_& module) {
 }
 
 void Raise(const Status& status) {
-  if (status.code() == ErrorCode::kInvalidArgument) RaiseValueError(status.message());
-  py::object error = py::reinterpret_borrow<py::object>(error_class)(status.message());
+  const std::string sentence = WithoutDashes(status.message());
+  if (status.code() == ErrorCode::kInvalidArgument) RaiseValueError(sentence);
+  py::object error = py::reinterpret_borrow<py::object>(error_class)(sentence);
   error.attr("code") = CodeName(status.code());
   PyErr_SetObject(error_class, error.ptr());
   throw py::error_already_set();
@@ -64,7 +82,8 @@ void Raise(const Status& status) {
 void Warn(const std::vector<std::string>& sentences) {
   constexpr int kCallerOfPackage = 2;  // 1 is the package's own function
   for (const std::string& sentence : sentences)
-    if (PyErr_WarnEx(PyExc_UserWarning, sentence.c_str(), kCallerOfPackage) != 0) throw py::error_already_set();
+    if (PyErr_WarnEx(PyExc_UserWarning, WithoutDashes(sentence).c_str(), kCallerOfPackage) != 0)
+      throw py::error_already_set();
 }
 
 void RaiseValueError(const std::string& sentence) { throw py::value_error(sentence); }

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // A Status as a Python exception: ValueError for what the caller asked wrongly (kInvalidArgument), else pliant.Error
-// with the name of the code. The message is the Status's sentence. The GIL has to be held.
+// with the name of the code. The message is the Status's sentence, in which arguments and
+// options have no dashes. The GIL has to be held.
 #pragma once
 
 #include <string>

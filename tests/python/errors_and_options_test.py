@@ -153,6 +153,11 @@ class Options(TestCase):
         self.assertEqual(self.refused({"Init.metod": "window"}),
                          "there is no option 'Init.metod'; did you mean 'Init.method'?")
 
+    def test_what_an_option_needs_is_named_without_dashes(self):
+        with self.assertRaises(ValueError) as caught:
+            pliant.track(SEQUENCE, self.folder / "run", {"Init.method": "colmap_model"})
+        self.assertIn("name it with Init.model_path", sentence(self, caught.exception))
+
     def test_values_are_checked_as_on_the_command_line(self):
         self.assertEqual(self.refused({"General.threads": 0}),
                          "General.threads is '0'; give a whole number from 1 to 1024")

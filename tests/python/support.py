@@ -92,8 +92,9 @@ def images(count):
 
 
 def sentence(test, error):
-    """The message of an exception, which is one line."""
+    """The message of an exception, which is one line, and names arguments and options as Python has them."""
     text = str(error)
     test.assertTrue(text and "\n" not in text, text)
     test.assertNotRegex(text, re.compile(r"[.!]$"))
+    test.assertNotRegex(text, re.compile(r"(^|[ (])--[A-Za-z]"))
     return text
