@@ -50,8 +50,8 @@ TEST(Program, HelpAndVersionSucceed) {
   EXPECT_EQ(Pliant("--help").exit, 0);
   const Outcome version = Pliant("--version");
   EXPECT_EQ(version.exit, 0);
-  EXPECT_THAT(version.out,
-              testing::MatchesRegex("pliant [0-9]+\\.[0-9]+\\.[0-9]+( \\(commit [0-9a-f]+(-dirty)?\\))?\nbuilt by .+\nwith .*Ceres 2\\.[0-9].*\n"));
+  EXPECT_THAT(version.out, testing::MatchesRegex("pliant [0-9]+\\.[0-9]+\\.[0-9]+( \\(commit "
+                                                 "[0-9a-f]+(-dirty)?\\))?\nbuilt by .+\nwith .*Ceres 2\\.[0-9].*\n"));
 }
 
 TEST(Program, AnUnknownCommandNamesTheNearestOne) {
