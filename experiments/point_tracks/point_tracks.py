@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What `pliant track --tracks` makes of tracks from outside, on simulated colons. README.md beside this file.
 
-usage: point_tracks.py [--build DIR] [--output_path DIR] [--sequences DIR] [--amplitudes 0,2.5,5,10] [--seeds 1,2]
-                       [--noise_seeds N]
+usage: point_tracks.py [--build DIR] [--output_path DIR] [--sequences DIR] [--amplitudes 0,2.5,5,10] [--omega 2.5]
+                       [--seeds 1,2] [--kinds own,oracle,truth,opencv,thinned] [--noise_seeds N]
 """
 import argparse
 import csv
@@ -17,7 +17,6 @@ from pathlib import Path
 import numpy as np
 
 SCENE = "--Deformation.wavelength_mm 628.3185307179587 --Trajectory.speed_mm_s 15 --Trajectory.frames 100".split()
-OMEGA_RAD_S = "2.5"
 NOISE_PX = 0.3
 CORNERS_OF = range(0, 100, 10)  # frames whose corners have a true track
 THINNED = 60  # points that are seen at a time
@@ -34,13 +33,13 @@ def pliant(arguments, *args):
 
 
 def sequence_of(arguments, amplitude, seed):
-    name = f"dm_A{amplitude}_w{OMEGA_RAD_S if float(amplitude) > 0 else 0}_s{seed}"
+    name = f"dm_A{amplitude}_w{arguments.omega if float(amplitude) > 0 else 0}_s{seed}"
     if arguments.sequences and (arguments.sequences / name / "done").exists():
         return arguments.sequences / name
     folder = arguments.output_path / "sequences" / name
     if not (folder / "done").exists():
         pliant(arguments, "simulate", "--quiet", "--overwrite", "--output_path", folder, "--Deformation.amplitude_mm", amplitude,
-               "--Deformation.omega_rad_s", OMEGA_RAD_S, "--Scene.seed", seed, *SCENE)
+               "--Deformation.omega_rad_s", arguments.omega, "--Scene.seed", seed, *SCENE)
         (folder / "done").touch()
     return folder
 
@@ -161,7 +160,7 @@ def print_table(arguments):
             sequence = sequence_of(arguments, amplitude, seed)
             folder = arguments.output_path / sequence.name
             folder.mkdir(parents=True, exist_ok=True)
-            for variant in VARIANTS:
+            for variant in arguments.kinds.split(","):
                 f = figures_of_run(arguments, variant, sequence, folder, int(seed))
                 cells = [f"{f['tracked']}"]
                 if "rmse" in f:
@@ -203,7 +202,9 @@ def main():
     parser.add_argument("--output_path", type=Path, default=Path("build/experiments/point_tracks"))
     parser.add_argument("--sequences", type=Path, help="sequences of the experiment simulated_colon, where they are there")
     parser.add_argument("--amplitudes", default="0,2.5,5,10")
+    parser.add_argument("--omega", default="2.5", help="of the deformation, rad/s")
     parser.add_argument("--seeds", default="1,2")
+    parser.add_argument("--kinds", default=",".join(VARIANTS), help="of tracks; thinned ones are those of opencv")
     parser.add_argument("--noise_seeds", type=int, default=0,
                         help="compare the oracle with a file of true tracks over as many draws of the noise, no more")
     arguments = parser.parse_args()
