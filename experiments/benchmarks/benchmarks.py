@@ -306,7 +306,7 @@ class Runner:
         camera."""
         first = sequence.start or 0
         self.step("first_frame", folder, "first_frame/groundtruth.txt",
-                  ["dataset", "convert", "--input_path", path, *camera, "--start", first, "--end", first + 1, "--quiet",
+                  ["dataset", "convert", path, *camera, "--start", first, "--end", first + 1, "--quiet",
                    "--output_path", folder / "first_frame"])
         words = (folder / "first_frame/groundtruth.txt").read_text(encoding="utf-8").split()
         counts = json.loads((folder / "run/run.json").read_text(encoding="utf-8"))["counts"]
