@@ -21,6 +21,16 @@ constexpr double kStandstill_mm = 0.05;        // what constant velocity and the
 constexpr std::size_t kPosesBeforeSignal = 6;  // the signal follows the eighth row; the last ones may be cut
 constexpr int kShortFrames = 16;
 
+// Changes a byte in the middle: head and end are as they were, so that nothing tells before the image is read.
+void Damage(const std::filesystem::path& image) {
+  std::fstream file(image, std::ios::in | std::ios::out | std::ios::binary);
+  const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(image) / 2);
+  file.seekg(middle);
+  const auto byte = static_cast<char>(file.get() ^ 1);
+  file.seekp(middle);
+  file.put(byte);
+}
+
 // The run folder reads back and holds as many poses as the summary says.
 void ExpectReadable(const std::string& path, std::int64_t poses) {
   const auto run = ReadRun(path);
@@ -28,16 +38,29 @@ void ExpectReadable(const std::string& path, std::int64_t poses) {
   EXPECT_EQ(static_cast<std::int64_t>(run->poses.size()), poses);
 }
 
-TEST(Robustness, ATruncatedImageEndsTheRunAndTheFramesBeforeItStay) {
+TEST(Robustness, ADamagedImageEndsTheRunAndTheFramesBeforeItStay) {
   const TestFolder folder;
   const SequenceCopy sequence(folder, kShortFrames);
-  std::filesystem::resize_file(sequence.Image(9), std::filesystem::file_size(sequence.Image(9)) / 2);
+  Damage(sequence.Image(9));
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kFailed);
   EXPECT_THAT(summary.note, HasSubstr(FrameName(9)));
   EXPECT_EQ(summary.frames_tracked, 9);
   ExpectReadable(folder.Path("run"), 9);
   EXPECT_TRUE(std::filesystem::exists(folder.Path("run/sparse/points3D.bin")));
+}
+
+TEST(Robustness, ATruncatedImageIsNamedBeforeTheFirstFrame) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, kShortFrames);
+  std::filesystem::resize_file(sequence.Image(9), std::filesystem::file_size(sequence.Image(9)) / 2);
+  RunRequest request;
+  request.input.image_path = sequence.path();
+  request.output_path = folder.Path("run");
+  const auto summary = RunTrack(request, DepthStart(), {});
+  EXPECT_EQ(summary.status().code(), ErrorCode::kUnreadable);
+  EXPECT_THAT(summary.status().message(), HasSubstr(FrameName(9) + " is truncated"));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run")));
 }
 
 TEST(Robustness, AnImageOfAnotherSizeIsNamedBeforeTheFirstFrame) {
@@ -223,8 +246,8 @@ TEST_F(BeforeTheFirstMap, AStopOnRequestWritesTheFramesThatWait) {
   ExpectInitializing(4);
 }
 
-TEST_F(BeforeTheFirstMap, ATruncatedImageWritesTheFramesThatWait) {
-  std::filesystem::resize_file(sequence_.Image(4), std::filesystem::file_size(sequence_.Image(4)) / 2);
+TEST_F(BeforeTheFirstMap, ADamagedImageWritesTheFramesThatWait) {
+  Damage(sequence_.Image(4));
   const RunSummary summary = TrackSequenceAt(sequence_.path(), folder_.Path("run"), TrackOptions());
   EXPECT_EQ(summary.status, RunStatus::kFailed);
   EXPECT_THAT(summary.note, HasSubstr(FrameName(4)));

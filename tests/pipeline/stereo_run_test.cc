@@ -171,15 +171,14 @@ TEST_F(StereoRun, SaysBeforeItStartsThatPairsAreSwappedOrDepthIsInAnotherUnit) {
               Contains(HasSubstr("the depth images say 0.1 times what poses and baseline agree on")));
 }
 
-TEST_F(StereoRun, FailsWithItsReasonWhereARightImageCannotBeRead) {
+TEST_F(StereoRun, SaysBeforeTheFirstFrameThatARightImageIsCutOff) {
   RunRequest request;
   request.input.image_path = Sequence(/*mono=*/false);
   request.output_path = folder_.Path("run");
   std::filesystem::resize_file(std::filesystem::path(request.input.image_path) / "right/000000.png", 500);
   const auto summary = RunTrack(request, StereoOptions(), {});
-  ASSERT_TRUE(summary.ok()) << summary.status().message();
-  EXPECT_EQ(summary->status, RunStatus::kFailed);
-  EXPECT_THAT(summary->note, HasSubstr("right/000000.png is truncated"));
+  EXPECT_EQ(summary.status().code(), ErrorCode::kUnreadable);
+  EXPECT_THAT(summary.status().message(), HasSubstr("right/000000.png is truncated"));
 }
 
 // Median relative error of the surface's depths in some frames.
