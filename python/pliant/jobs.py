@@ -103,8 +103,8 @@ def calibrate(image_path: StrPath, board: str, output_path: StrPath | None = Non
         options: such as {"Calibrate.model": "OPENCV_FISHEYE"}.
         figure: a picture of the errors, .png, .svg or .pdf.
         overwrite: replace files that are there.
-        on_progress: called with what is done ("search" in images, their "size", "start", "fit" and "check" of camera models), how much
-            of it is done, and how much there is (0: not known).
+        on_progress: called with what is done ("search" in images, their "size", "start", "fit" and "check" of camera
+            models), how much of it is done, and how much there is (0: not known).
 
     Raises:
         pliant.Error: the board is not seen, or the images do not determine the camera. Nothing is written then.
