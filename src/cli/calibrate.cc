@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -208,10 +206,9 @@ int CalibrateCommand(std::span<const std::string> args) {
   const std::vector<std::string> figure_paths = FigurePaths(figure_path, request.HasPairs());
   if (const auto exit = CheckFigures(line, figure_paths, request.existing)) return *exit;
 
-  const std::atomic<bool>& stop = StopOnSignals();
-  const auto with_bars = [&](const auto& job) {
-    JobBars bars(stop, "steps");
-    return job(request, options, std::ref(bars));
+  const auto with_bars = [&](const auto& calibrate) {
+    return WithBars(
+        StopOnSignals(), [&](const JobProgress& progress) { return calibrate(request, options, progress); }, "steps");
   };
   if (!request.HasPairs()) {
     const auto summary = with_bars(CalibrateImages);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -168,11 +167,8 @@ int InfoCommand(std::span<const std::string> args) {
   const auto sequence = OpenSequence(request);
   if (!sequence.ok()) return line.Failure(sequence.status().message());
   PrintDescription(**sequence, request);
-  const std::atomic<bool>& stop = StopOnSignals();
-  const auto check = [&] {
-    JobBars bars(stop);
-    return CheckSequence(**sequence, {}, std::ref(bars));
-  }();
+  const auto check =
+      WithBars(StopOnSignals(), [&](const JobProgress& progress) { return CheckSequence(**sequence, {}, progress); });
   if (!check.ok()) return line.Failure(check.status().message());
   PrintCheck(*check, (*sequence)->BaselineMm().has_value());
   return check->wrong.empty() ? kExitOk : kExitFailed;
@@ -240,11 +236,9 @@ int StatisticsCommand(std::span<const std::string> args) {
   ListStatisticsOptions(&options, &table);
   if (const auto exit = line.Resolve(table)) return *exit;
   if (const auto exit = arguments.Check(line)) return *exit;
-  const std::atomic<bool>& stop = StopOnSignals();
-  const auto measured = [&] {
-    JobBars bars(stop);
-    return MeasureSequenceStatistics(arguments.Request(), options, std::ref(bars));
-  }();
+  const auto measured = WithBars(StopOnSignals(), [&](const JobProgress& progress) {
+    return MeasureSequenceStatistics(arguments.Request(), options, progress);
+  });
   if (!measured.ok()) return line.Failure(measured.status().message());
   PrintStatistics(*measured);
   return kExitOk;

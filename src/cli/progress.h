@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -87,5 +88,12 @@ class JobBars {
   Progress::Clock::time_point start_;
   std::optional<Progress> bar_;
 };
+
+// What `job`, which takes a JobProgress, gives; its bars are gone then.
+template <class Job>
+auto WithBars(const std::atomic<bool>& stop, const Job& job, std::string unit = "frames") {
+  JobBars bars(stop, std::move(unit));
+  return job(std::ref(bars));
+}
 
 }  // namespace pliant::cli
