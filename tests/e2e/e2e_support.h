@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -81,6 +82,15 @@ class SequenceCopy {
   void Fill(int first, int last, int level) const {
     const cv::Mat image = cv::imread(Image(first).string());
     for (int i = first; i <= last; ++i) Replace(i, cv::Mat(image.size(), CV_8UC3, cv::Scalar::all(level)));
+  }
+  // Changes a byte in the middle: head and end are as they were, so that nothing tells before the image is read.
+  void Damage(int idx) const {
+    std::fstream file(Image(idx), std::ios::in | std::ios::out | std::ios::binary);
+    const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(Image(idx)) / 2);
+    file.seekg(middle);
+    const auto byte = static_cast<char>(file.get() ^ 1);
+    file.seekp(middle);
+    file.put(byte);
   }
 
  private:

@@ -239,7 +239,7 @@ TEST_F(ResumedRun, GoesOnAfterAnImageWasMended) {
   sequence_ = copy.path();
   const std::string image = "sequence/images/" + FrameName(21);
   const std::string bytes = folder_.Read(image);
-  folder_.Write(image, bytes.substr(0, 1000));
+  copy.Damage(21);
   const auto failed = Track("parts", false, 10 * kResumedFrames);
   ASSERT_TRUE(failed.ok());
   EXPECT_EQ(failed->status, RunStatus::kFailed);

@@ -21,16 +21,6 @@ constexpr double kStandstill_mm = 0.05;        // what constant velocity and the
 constexpr std::size_t kPosesBeforeSignal = 6;  // the signal follows the eighth row; the last ones may be cut
 constexpr int kShortFrames = 16;
 
-// Changes a byte in the middle: head and end are as they were, so that nothing tells before the image is read.
-void Damage(const std::filesystem::path& image) {
-  std::fstream file(image, std::ios::in | std::ios::out | std::ios::binary);
-  const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(image) / 2);
-  file.seekg(middle);
-  const auto byte = static_cast<char>(file.get() ^ 1);
-  file.seekp(middle);
-  file.put(byte);
-}
-
 // The run folder reads back and holds as many poses as the summary says.
 void ExpectReadable(const std::string& path, std::int64_t poses) {
   const auto run = ReadRun(path);
@@ -41,7 +31,7 @@ void ExpectReadable(const std::string& path, std::int64_t poses) {
 TEST(Robustness, ADamagedImageEndsTheRunAndTheFramesBeforeItStay) {
   const TestFolder folder;
   const SequenceCopy sequence(folder, kShortFrames);
-  Damage(sequence.Image(9));
+  sequence.Damage(9);
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kFailed);
   EXPECT_THAT(summary.note, HasSubstr(FrameName(9)));
@@ -247,7 +237,7 @@ TEST_F(BeforeTheFirstMap, AStopOnRequestWritesTheFramesThatWait) {
 }
 
 TEST_F(BeforeTheFirstMap, ADamagedImageWritesTheFramesThatWait) {
-  Damage(sequence_.Image(4));
+  sequence_.Damage(4);
   const RunSummary summary = TrackSequenceAt(sequence_.path(), folder_.Path("run"), TrackOptions());
   EXPECT_EQ(summary.status, RunStatus::kFailed);
   EXPECT_THAT(summary.note, HasSubstr(FrameName(4)));
