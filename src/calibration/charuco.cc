@@ -184,7 +184,15 @@ bool ShowsOtherCharuco(const cv::Mat& gray, const CalibrationBoard& board) {
          (HasUnknownMarkers(board, marker_ids) || !FitLayout(board, *pattern, markers, marker_ids));
 }
 
+cv::Mat DrawCharuco(const CalibrationBoard& board, int px) {
+  cv::Mat image;
+  OpenCvBoard(board)->draw({(board.columns + 1) * px, (board.rows + 1) * px}, image);
+  return image;
+}
+
 #else
+
+cv::Mat DrawCharuco(const CalibrationBoard& /*board*/, int /*px*/) { return {}; }
 
 bool ShowsOtherCharuco(const cv::Mat& /*gray*/, const CalibrationBoard& /*board*/) { return false; }
 

@@ -22,4 +22,7 @@ std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard
 // has, or which are not beside each other as it has them.
 bool ShowsOtherCharuco(const cv::Mat& gray, const CalibrationBoard& board);
 
+// The squares and markers of a supported board, CV_8UC1, 0 on 255, `px` pixels to a square's side.
+cv::Mat DrawCharuco(const CalibrationBoard& board, int px);
+
 }  // namespace pliant
