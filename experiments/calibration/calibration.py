@@ -5,7 +5,7 @@
 
     calibration.py --program build/release/pliant --output_path RESULTS [--only "NAME;..."] [--seed N]
 
-Renders a chessboard from 24 sides through lenses of every camera model, clean and as an endoscope records it,
+Photographs a chessboard from 24 sides through lenses of every camera model, clean and as an endoscope records it,
 calibrates with and without knowledge of the model, and prints a table; then the same for pairs of cameras. What is
 there already is kept.
 """
@@ -14,15 +14,12 @@ import re
 import sys
 from pathlib import Path
 
-import matplotlib.image
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
 from scenes import call, scene_arguments, slug  # noqa: E402
 
-COLUMNS, ROWS, SQUARE_MM = 9, 6, 3.0  # inner corners
-MARGIN = 1  # white, in squares, around the outer squares
-TEXELS = 64  # a square
+BOARD = "chessboard:9x6:3"
 VIEWS = 24
 WIDTH, HEIGHT = 640, 480
 # name: model, parameters
@@ -37,24 +34,9 @@ LOOKS = ("clean", "endoscope")
 PAIRS = ("laparoscope", "radial", "colonoscope")  # both cameras have such a lens, the right one's a little different
 RIGHT_CENTER_MM = np.array([4.3, 0.1, -0.05])  # in the left camera
 RIGHT_TURN = np.radians([0.1, -0.6, 0.3])
-# A dull board before a clean lens that is held still.
-SET_UP = ("--Light.specular 0 --Sensor.shutter_s 0 --Sensor.readout_s 0 --Sensor.drops 0 --Sensor.debris 0"
+# A clean lens that is held still.
+SET_UP = ("--Sensor.shutter_s 0 --Sensor.readout_s 0 --Sensor.drops 0 --Sensor.debris 0"
           " --Recording.lost_share 0 --Recording.video_qp 0")
-
-
-def write_board(folder):
-    """A flat mesh that carries the picture of a chessboard. World frame: the first inner corner at the origin."""
-    columns, rows = COLUMNS + 1 + 2 * MARGIN, ROWS + 1 + 2 * MARGIN
-    row, column = np.mgrid[:rows * TEXELS, :columns * TEXELS] // TEXELS - MARGIN
-    dark = (row >= 0) & (row <= ROWS) & (column >= 0) & (column <= COLUMNS) & ((row + column) % 2 == 0)
-    matplotlib.image.imsave(folder / "board.png", np.repeat(np.where(dark, 0.1, 0.8)[..., None], 3, 2))
-    (folder / "board.mtl").write_text("newmtl board\nmap_Kd board.png\n")
-    left, top = -(1 + MARGIN) * SQUARE_MM, -(1 + MARGIN) * SQUARE_MM
-    right, bottom = left + columns * SQUARE_MM, top + rows * SQUARE_MM
-    (folder / "board.obj").write_text(
-        "mtllib board.mtl\nusemtl board\n"
-        f"v {left} {top} 0\nv {right} {top} 0\nv {right} {bottom} 0\nv {left} {bottom} 0\n"
-        "vt 0 1\nvt 1 1\nvt 1 0\nvt 0 0\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n")
 
 
 def project(model, params, points):
@@ -85,38 +67,6 @@ def rotation(axis_angle):
     return np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
 
 
-def quaternion(matrix):
-    """x, y, z, w; for rotations of less than half a turn."""
-    w = 0.5 * math.sqrt(1 + np.trace(matrix))
-    return [(matrix[2, 1] - matrix[1, 2]) / (4 * w), (matrix[0, 2] - matrix[2, 0]) / (4 * w),
-            (matrix[1, 0] - matrix[0, 1]) / (4 * w), w]
-
-
-def camera_from_board(model, params, random, right=None):
-    """Views in which the whole board is in the image, tilted by 5 to 40 degrees, near its edges too; with the
-    parameters of a right camera in its image too."""
-    corners = np.array([(x, y, 0) for y in range(ROWS) for x in range(COLUMNS)]) * SQUARE_MM
-    center = corners.mean(0)
-    poses = []
-    while len(poses) < VIEWS:
-        direction = random.uniform(0, 2 * math.pi)
-        tilt = math.radians(random.uniform(5, 40))
-        turned = rotation(tilt * np.array([math.cos(direction), math.sin(direction), 1e-9]))
-        distance = random.uniform(0.8, 1.7) * COLUMNS * SQUARE_MM * params[0] / WIDTH
-        place = distance * np.array([random.uniform(-0.45, 0.45) * WIDTH / params[0],
-                                     random.uniform(-0.45, 0.45) * HEIGHT / params[0], 1])
-        in_camera = (corners - center) @ turned.T + place
-        if in_camera[:, 2].min() < 5:
-            continue
-        pixels = project(model, params, in_camera)
-        if right:
-            seen_right = project(model, right, (in_camera - RIGHT_CENTER_MM) @ rotation(RIGHT_TURN).T)
-            pixels = np.concatenate([pixels, seen_right])
-        if (pixels > 12).all() and (pixels < np.array([WIDTH, HEIGHT]) - 12).all():
-            poses.append((turned, place - turned @ center))
-    return poses
-
-
 def right_lens(name):
     """The model and the parameters of the right camera of a pair."""
     model, params = LENSES[name]
@@ -126,43 +76,54 @@ def right_lens(name):
     return model, (*changed, *params[center + 2:])
 
 
-def render_boards(arguments, folder, boards, look, lens, poses):
-    """The images of a camera that stands at these poses before the board."""
+def render_boards(arguments, boards, look, lens, *path):
+    """A photograph a second of the board."""
     model, params = lens
-    lines = []
-    for i, (turned, moved) in enumerate(poses):
-        place, turn = -turned.T @ moved, quaternion(turned.T)
-        lines.append(" ".join(repr(float(number)) for number in (i / 30, *place, *turn)))
-    (folder / f"{boards}.txt").write_text("\n".join(lines) + "\n")
-    call(arguments.program, "simulate", "--quiet", "--overwrite", "-o", folder / boards, "--realism", look,
-         "--Scene.kind", "mesh", "--Scene.mesh_path", folder / "board.obj", "--Scene.seed", arguments.seed,
-         "--Trajectory.kind", "file", "--Trajectory.path", folder / f"{boards}.txt", "--Trajectory.frames", VIEWS,
-         "--Camera.model", model, "--Camera.params", ",".join(map(str, params)), *SET_UP.split()).check_returncode()
+    if not (boards / "simulation.yaml").exists():
+        call(arguments.program, "simulate", "--quiet", "--overwrite", "-o", boards, "--realism", look,
+             "--Scene.kind", "board", "--Scene.board", BOARD, "--Scene.seed", arguments.seed,
+             "--Trajectory.fps", 1, "--Trajectory.frames", VIEWS, *(path or ("--Trajectory.kind", "board")),
+             "--Camera.model", model, "--Camera.params", ",".join(map(str, params)), *SET_UP.split()).check_returncode()
+    return boards
+
+
+def folder_of(arguments, name, look):
+    return arguments.output_path / "sequences" / f"{slug(name)}_{look}_{arguments.seed}"
 
 
 def render(arguments, name, look):
-    folder = arguments.output_path / "sequences" / f"{slug(name)}_{look}_{arguments.seed}"
-    if (folder / "boards" / "simulation.yaml").exists():
-        return folder / "boards"
-    folder.mkdir(parents=True, exist_ok=True)
-    write_board(folder)
-    poses = camera_from_board(*LENSES[name], np.random.default_rng(arguments.seed))
-    render_boards(arguments, folder, "boards", look, LENSES[name], poses)
-    return folder / "boards"
+    return render_boards(arguments, folder_of(arguments, name, look) / "boards", look, LENSES[name])
+
+
+def matrix(x, y, z, w):
+    """Of a quaternion of unit length."""
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+def times(q, r):
+    """The product of two quaternions (x, y, z, w)."""
+    (a, b, c, d), (e, f, g, h) = q, r
+    return [d * e + a * h + b * g - c * f, d * f - a * g + b * h + c * e, d * g + a * f - b * e + c * h,
+            d * h - a * e - b * f - c * g]
 
 
 def render_pair(arguments, name, look):
-    folder = arguments.output_path / "sequences" / f"{slug(name)}_pair_{look}_{arguments.seed}"
-    if (folder / "right" / "simulation.yaml").exists():
-        return folder
-    folder.mkdir(parents=True, exist_ok=True)
-    write_board(folder)
-    right = right_lens(name)
-    poses = camera_from_board(*LENSES[name], np.random.default_rng(arguments.seed), right[1])
-    mount = rotation(RIGHT_TURN)
-    render_boards(arguments, folder, "left", look, LENSES[name], poses)
-    render_boards(arguments, folder, "right", look, right,
-                  [(mount @ turned, mount @ (moved - RIGHT_CENTER_MM)) for turned, moved in poses])
+    """The left camera's views, and what the right one sees beside it: not always all of the board."""
+    folder = folder_of(arguments, f"{name} pair", look)
+    left = render_boards(arguments, folder / "left", look, LENSES[name])
+    angle = np.linalg.norm(RIGHT_TURN)
+    left_from_right = [*(-math.sin(angle / 2) / angle * RIGHT_TURN), math.cos(angle / 2)]
+    lines = []
+    for line in (left / "groundtruth.txt").read_text().splitlines():
+        if not line.startswith("#"):
+            time, *pose = map(float, line.split())
+            place = np.array(pose[:3]) + matrix(*pose[3:]) @ RIGHT_CENTER_MM
+            lines.append(" ".join(repr(float(number)) for number in (time, *place, *times(pose[3:], left_from_right))))
+    (folder / "right.txt").write_text("\n".join(lines) + "\n")
+    render_boards(arguments, folder / "right", look, right_lens(name),
+                  "--Trajectory.kind", "file", "--Trajectory.path", folder / "right.txt")
     return folder
 
 
@@ -245,7 +206,7 @@ def calibrated(arguments, camera, *images):
     """What the calibration said; it is kept beside it."""
     said = camera.with_suffix(".txt")
     if not camera.exists():
-        done = call(arguments.program, "calibrate", *images, "--board", f"chessboard:{COLUMNS}x{ROWS}:{SQUARE_MM}",
+        done = call(arguments.program, "calibrate", *images, "--board", BOARD,
                     "-o", camera, "--figure", camera.with_suffix(".png"))
         if not camera.exists():
             raise SystemExit(done.stderr)

@@ -21,8 +21,9 @@ const Manual kSimulateManual = {
     "render a deforming scene with depth and poses",
     "Renders what a camera with a light beside it sees in a textured scene that deforms, and writes it as a sequence "
     "that pliant track reads and pliant evaluate knows the truth of. The scene is a colon with folds, a smooth tube, "
-    "an "
-    "organ's surface seen from outside, two lobes that move by themselves, or a mesh from a file (Scene.kind).\n\n"
+    "an organ's surface seen from outside, two lobes that move by themselves, a mesh from a file, or a board for "
+    "pliant "
+    "calibrate (Scene.kind).\n\n"
     "Reads nothing but the mesh (Scene.mesh_path) and the camera's poses (Trajectory.path) where they are asked for; "
     "their names are relative to the working folder and are written absolute. The same options give the same files, "
     "byte for byte, whatever the number of threads.\n\n"
@@ -36,6 +37,9 @@ const Manual kSimulateManual = {
      // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): one example in two literals
      "pliant simulate --output_path ct --Scene.kind mesh --Scene.mesh_path colon.stl --Trajectory.kind file "
      "--Trajectory.path poses.txt",
+     // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): one example in two literals
+     "pliant simulate --output_path boards --Scene.kind board --Trajectory.kind board --Trajectory.fps 1 "
+     "--Trajectory.frames 24",
      "pliant simulate --output_path again --config colon/simulation.yaml"},
     MainSimulationOptions(),
 };

@@ -14,7 +14,8 @@ namespace pliant {
 // NOLINTNEXTLINE(readability-function-size): a line an option
 void SimulationOptions::List(OptionTable& table) {
   table.BeginGroup("Scene", "what is filmed");
-  table.AddChoice("kind", &scene.kind, "colon with folds, smooth tube, sheet, two lobes, or a mesh file");
+  table.AddChoice("kind", &scene.kind,
+                  "colon with folds, smooth tube, sheet, two lobes, a mesh file, or a calibration board");
   table.Add("seed", &scene.seed, "-", "of everything random: folds, texture, tremor, noise", 0, 1 << 30);
   table.Add("radius_mm", &scene.radius_mm, "mm", "radius of the lumen without its folds", 5, 200);
   table.Add("length_mm", &scene.length_mm, "mm", "of the tube or sheet; 0: the camera's path and view_mm more", 0,
@@ -29,6 +30,7 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("mesh_path", &scene.mesh_path, "FILE", "mesh: OBJ, PLY or STL; relative to the working folder");
   table.Add("mesh_scale", &scene.mesh_scale, "mm", "mesh: millimeters in a unit of the file", 1e-6, 1e6);
   table.Add("mesh_step_mm", &scene.mesh_step_mm, "mm", "longest edge of the mesh; facets must not be seen", 0.1, 20);
+  table.Add("board", &scene.board, "-", "board: as pliant calibrate --board takes it");
 
   table.BeginGroup("Texture", "what is painted on the wall");
   table.Add("contrast", &texture.contrast, "-", "of mottling and vessels; 0: one color", 0, 4);
@@ -59,7 +61,7 @@ void SimulationOptions::List(OptionTable& table) {
 
   table.BeginGroup("Light", "one light at the camera");
   table.Add("ambient", &light.ambient, "-", "share of light that is reflected by the other walls", 0, 1);
-  table.Add("specular", &light.specular, "-", "peak of the wet reflection; 0: none", 0, 1000);
+  table.Add("specular", &light.specular, "-", "peak of the wet reflection, which a board has not; 0: none", 0, 1000);
   table.Add("roughness", &light.roughness, "-", "slope of the wet facets; larger: wider highlights", 0.01, 1);
   table.Add("unevenness_mm", &light.unevenness_mm, "mm", "of the wet film, by the mottling; breaks highlights up", 0,
             5);
@@ -126,7 +128,8 @@ void SimulationOptions::List(OptionTable& table) {
             100);
 
   table.BeginGroup("Trajectory", "the camera's way");
-  table.AddChoice("kind", &trajectory.kind, "forward, from side to side, on the spot, out and back, or a file's poses");
+  table.AddChoice("kind", &trajectory.kind,
+                  "forward, from side to side, on the spot, out and back, a file's poses, or views of a board");
   table.Add("frames", &trajectory.frames, "-", "number of frames of the camera", 1, 1000000);
   table.Add("fps", &trajectory.fps, "1/s", "frames a second", 0.01, 10000);
   table.Add("start_mm", &trajectory.start_mm, "mm", "first camera, along the scene's path", 0, 10000);
@@ -143,6 +146,10 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("loop_length_mm", &trajectory.loop_length_mm, "mm", "loop: how far out", 0, 1000);
   table.Add("loop_width_mm", &trajectory.loop_width_mm, "mm", "loop: to each side", 0, 200);
   table.Add("loop_period_s", &trajectory.loop_period_s, "s", "loop: out and back; 0: the whole sequence", 0, 10000);
+  table.Add("view_s", &trajectory.view_s, "s",
+            "board: from a view to the next; the camera stands still in each, so that 1 / view_s frames a second are "
+            "photographs",
+            0.01, 1000);
   table.Add("path", &trajectory.path, "FILE",
             "file: TUM lines, mm, s from the first frame; relative to the working folder");
   table.Add("tremor_mm", &trajectory.tremor_mm, "mm", "of the hand, about its standard deviation", 0, 20);

@@ -96,7 +96,7 @@ Eigen::Vector3f Shader::Radiance(const RayHit& hit, const Eigen::Vector3d& direc
   const float fall_off = (kReferenceMm / light_distance) * (kReferenceMm / light_distance);
   Eigen::Vector3f radiance = albedo * ((1.0F - ambient) * light_cosine + ambient);
   // The mean facet must be near enough to the light for a rough one to mirror it.
-  if (options_.specular > 0 && cosine > 0.85F) {
+  if (surface_.is_wet && options_.specular > 0 && cosine > 0.85F) {
     const Eigen::Vector3f facet = Facet(t, position, normal, std::max(footprint_mm, kFinestFacetMm));
     const float mirror = std::clamp(facet.dot((to_eye + to_light).normalized()), 0.1F, 1.0F);
     const float tan_sq = 1.0F / (mirror * mirror) - 1.0F;

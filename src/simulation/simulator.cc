@@ -79,7 +79,8 @@ Status CheckMemory(const SimulationOptions& options, double length_mm) {
   const double texels = around_mm * length_mm /
                         std::min(options.texture.texel_mm * options.texture.texel_mm,
                                  options.scene.mesh_step_mm * options.scene.mesh_step_mm / 8);
-  if (options.scene.kind != SceneKind::kMesh && texels > kMaxTexels)
+  const bool has_picture = options.scene.kind == SceneKind::kMesh || options.scene.kind == SceneKind::kBoard;
+  if (!has_picture && texels > kMaxTexels)
     return {ErrorCode::kInvalidArgument,
             "a wall " + FormatDouble(std::round(length_mm)) +
                 " mm long does not fit into memory at this resolution; shorten the path, or raise Texture.texel_mm and "
@@ -128,10 +129,13 @@ Status Simulator::State::MakeSurface(double length_mm) {
     case SceneKind::kLobes:
       surface = simulation::MakeSheet(options.scene, options.trajectory.height_mm, length_mm);
       break;
-    case SceneKind::kMesh: {
-      Result<simulation::Surface> mesh = simulation::MakeMeshSurface(options.scene);
-      if (!mesh.ok()) return mesh.status();
-      surface = *std::move(mesh);
+    case SceneKind::kMesh:
+    case SceneKind::kBoard: {
+      Result<simulation::Surface> made = options.scene.kind == SceneKind::kMesh
+                                             ? simulation::MakeMeshSurface(options.scene)
+                                             : simulation::MakeBoardSurface(options.scene);
+      if (!made.ok()) return made.status();
+      surface = *std::move(made);
       break;
     }
   }

@@ -43,7 +43,8 @@ struct Surface {
   std::vector<Eigen::Vector3f> swell_along;   // empty: zero
   double swell_radius_mm = 1;
   std::optional<SurfaceGrid> grid;
-  cv::Mat image;  // CV_8UC3, what a mesh brought with it; else empty
+  cv::Mat image;       // CV_8UC3, what a mesh brought with it; else empty
+  bool is_wet = true;  // has the film of Light.specular
 
   RestPoint VertexAtRest(std::uint32_t idx) const;
   RestPoint AtRest(const MaterialPoint& point) const;
@@ -70,5 +71,8 @@ double LobeGapMm(const SimulationOptions::Scene& options);
 // Scene `mesh`: read, scaled and divided until no edge is longer than mesh_step_mm. The sense of the normals is the
 // file's. Fails as ReadMeshFile does and with kInvalidArgument for a size that no scene has.
 Result<Surface> MakeMeshSurface(const SimulationOptions::Scene& options);
+
+// Scene `board`: flat, with its picture (DrawBoard), seen from smaller z. Fails as ParseBoard and DrawBoard do.
+Result<Surface> MakeBoardSurface(const SimulationOptions::Scene& options);
 
 }  // namespace pliant::simulation

@@ -9,6 +9,7 @@
 
 #include "pliant/base/random.h"
 #include "pliant/base/text.h"
+#include "simulation/board_views.h"
 
 namespace pliant::simulation {
 namespace {
@@ -92,6 +93,12 @@ Result<Path> Path::Create(const SimulationOptions& options) {
     path.poses_ = *std::move(poses);
     return path;
   }
+  if (trajectory.kind == TrajectoryKind::kBoard) {
+    auto views = BoardViews(options);
+    if (!views.ok()) return views.status();
+    path.views_ = *std::move(views);
+    return path;
+  }
   if (!trajectory.start_pose.empty()) {
     auto pose = ParsePose(trajectory.start_pose);
     if (!pose.ok()) return pose.status();
@@ -100,6 +107,9 @@ Result<Path> Path::Create(const SimulationOptions& options) {
     return {ErrorCode::kInvalidArgument,
             "a mesh does not say where its camera starts; give Trajectory.start_pose, or Trajectory.kind file with "
             "Trajectory.path"};
+  } else if (options.scene.kind == SceneKind::kBoard) {
+    return {ErrorCode::kInvalidArgument,
+            "a board has no path of its own for a camera; give Trajectory.kind board, or Trajectory.start_pose"};
   }
   return path;
 }
@@ -185,6 +195,14 @@ Rigid3 Path::FromFile(double time_s) const {
   return Interpolated(a.world_from_cam, b.world_from_cam, (time_s - a.timestamp_s) / (b.timestamp_s - a.timestamp_s));
 }
 
+Rigid3 Path::AmongViews(double time_s) const {
+  const double at = std::clamp(time_s / options_.view_s, 0.0, static_cast<double>(views_.size() - 1));
+  const auto before = std::min(static_cast<std::size_t>(at), views_.size() - 2);
+  const double share = at - static_cast<double>(before);
+  // Without speed at either end.
+  return Interpolated(views_[before], views_[before + 1], share * share * (3.0 - 2.0 * share));
+}
+
 Rigid3 Path::Tremor(double time_s) const {
   Eigen::Matrix<double, 6, 1> value;
   for (int i = 0; i < 6; ++i) {
@@ -213,6 +231,9 @@ Rigid3 Path::WorldFromCamera(double time_s) const {
       break;
     case TrajectoryKind::kFile:
       return FromFile(time_s);
+    case TrajectoryKind::kBoard:
+      world_from_steady = AmongViews(time_s);
+      break;
   }
   return world_from_steady * Tremor(time_s);
 }

@@ -23,7 +23,8 @@ double LastCameraMm(const SimulationOptions::Trajectory& options);
 class Path {
  public:
   // Fails with kInvalidArgument for a start pose that is none or that the scene needs and does not have, as
-  // ReadTumTrajectory does for the file, and with kInsufficient for a file that ends before the last frame.
+  // ReadTumTrajectory does for the file, with kInsufficient for a file that ends before the last frame, and as
+  // BoardViews does.
   static Result<Path> Create(const SimulationOptions& options);
 
   // The tube's; the path keeps a copy. Needed before any pose is asked for where the scene is a tube.
@@ -50,6 +51,7 @@ class Path {
   Rigid3 Sway(double time_s) const;
   Rigid3 Loop(double time_s) const;
   Rigid3 FromFile(double time_s) const;
+  Rigid3 AmongViews(double time_s) const;
   Rigid3 Tremor(double time_s) const;  // steady camera from trembling camera
   double LoopPeriodS() const;
   bool InTube() const;
@@ -60,6 +62,7 @@ class Path {
   std::optional<Centerline> centerline_;
   std::optional<Rigid3> start_;                     // given: the way is straight ahead from there
   std::vector<TimedPose> poses_;                    // of the file, times from 0 on
+  std::vector<Rigid3> views_;                       // of the board, one every view_s
   std::array<std::array<Wave, kWaves>, 6> tremor_;  // rotation about x, y, z, then translation
 };
 

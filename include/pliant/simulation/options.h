@@ -5,7 +5,7 @@
 // that a sequence depends on is one of these options; they are written beside it (simulation.yaml) and give it back.
 // World frame: millimeters, x right, y down. The camera's way starts at the origin and leaves it along +z: the
 // centerline of `colon` and `tube`, a straight line over the sheet of `surface` and `lobes` (which lies below it, at
-// larger y). In `mesh` it is the file's own frame, scaled.
+// larger y). In `mesh` it is the file's own frame, scaled; in `board` that of CalibrationBoard.
 #pragma once
 
 #include <array>
@@ -25,13 +25,16 @@ enum class SceneKind {
   kSurface,  // one smooth organ seen from outside: a curved sheet with relief
   kLobes,    // two lobes, one over the edge of the other with a step between them; each deforms by its own wave
   kMesh,     // a mesh from a file: OBJ, PLY, STL
+  kBoard,    // a flat board for calibration
 };
 template <>
 struct EnumNames<SceneKind> {
-  static constexpr std::array kNames = {
-      std::pair{SceneKind::kColon, std::string_view("colon")}, std::pair{SceneKind::kTube, std::string_view("tube")},
-      std::pair{SceneKind::kSurface, std::string_view("surface")},
-      std::pair{SceneKind::kLobes, std::string_view("lobes")}, std::pair{SceneKind::kMesh, std::string_view("mesh")}};
+  static constexpr std::array kNames = {std::pair{SceneKind::kColon, std::string_view("colon")},
+                                        std::pair{SceneKind::kTube, std::string_view("tube")},
+                                        std::pair{SceneKind::kSurface, std::string_view("surface")},
+                                        std::pair{SceneKind::kLobes, std::string_view("lobes")},
+                                        std::pair{SceneKind::kMesh, std::string_view("mesh")},
+                                        std::pair{SceneKind::kBoard, std::string_view("board")}};
 };
 
 enum class TrajectoryKind {
@@ -40,6 +43,7 @@ enum class TrajectoryKind {
   kHold,    // on the spot
   kLoop,    // forward and back on a closed curve; the last frame's camera is the first one's
   kFile,    // the poses of a file
+  kBoard,   // from view to view of a board, all of it in the image
 };
 template <>
 struct EnumNames<TrajectoryKind> {
@@ -47,7 +51,8 @@ struct EnumNames<TrajectoryKind> {
                                         std::pair{TrajectoryKind::kSway, std::string_view("sway")},
                                         std::pair{TrajectoryKind::kHold, std::string_view("hold")},
                                         std::pair{TrajectoryKind::kLoop, std::string_view("loop")},
-                                        std::pair{TrajectoryKind::kFile, std::string_view("file")}};
+                                        std::pair{TrajectoryKind::kFile, std::string_view("file")},
+                                        std::pair{TrajectoryKind::kBoard, std::string_view("board")}};
 };
 
 // How a sequence looks (MakeSimulationOptions).
@@ -77,6 +82,8 @@ struct SimulationOptions {
     std::string mesh_path;          // mesh: the file; written absolute beside a sequence
     double mesh_scale = 1.0;        // mesh: millimeters in a unit of the file
     double mesh_step_mm = 0.4;      // edge of the mesh, also of one that is read; finer where folds are steep
+    // board: as ParseBoard reads it
+    std::string board = "chessboard:9x6:3";
   } scene;
 
   struct Texture {
@@ -186,6 +193,7 @@ struct SimulationOptions {
     double loop_length_mm = 25.0;    // loop: how far out
     double loop_width_mm = 5.0;      // loop: to each side
     double loop_period_s = 0.0;      // loop: out and back; 0: the whole sequence
+    double view_s = 1.0;             // board: from a view, in which the camera stands still, to the next
     std::string path;                // file: TUM lines in seconds from the first frame on; written absolute
     double tremor_mm = 0.3;          // of the hand, standard deviation of about; none on the poses of a file
     double tremor_deg = 0.3;
