@@ -5,7 +5,7 @@
 # usage: install_test.sh PACKAGES ROOT
 #
 # Makes a new, minimal Debian 12 in the folder ROOT, installs the packages of the folder PACKAGES with apt, uses each of
-# them as its users do, and purges them: nothing of them may be left. Runs as root, needs debootstrap and a network, and
+# them as its users do, and purges them: nothing of them may be left. Then the same of the wheel, with pip. Runs as root, needs debootstrap and a network, and
 # takes some minutes. ROOT is removed first, and stays for a look when it fails.
 #
 # environment
@@ -26,6 +26,15 @@ install() { inside apt-get -qq install -y --no-install-recommends "$@" >>"$root/
 completed() {
   inside bash -c '. /usr/share/bash-completion/completions/pliant; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _pliant
     echo "${COMPREPLY[*]}"' bash "$@"
+}
+# The package's own tests that need nothing but it, with this Python.
+test_python() {
+  local name
+  for name in {camera,convert_arrays,cost,errors_and_options,extensions,jobs,kernels,reading,sequence,track_arrays,tracking}_test.py; do
+    inside env PLIANT_TEST_SEQUENCE=/tmp/rigid PLIANT_TEST_RUN=/tmp/rigid_run "$1" -B "/tmp/tests/$name" \
+      >"$root/tmp/test.log" 2>&1 || { tail -n 30 "$root/tmp/test.log"; exit 1; }
+    echo "$name: $(grep -E '^Ran ' "$root/tmp/test.log")"
+  done
 }
 installed_kb() { inside dpkg-query -W -f '${Installed-Size}\n' | awk '{sum += $1} END {print sum}'; }
 
@@ -83,12 +92,7 @@ pliant.simulate("/tmp/from_python", {"Trajectory.frames": 2})
 cp -r "$source/tests/python" "$root/tmp/tests"
 inside pliant simulate --quiet --output_path /tmp/rigid --Trajectory.frames 60
 inside pliant track /tmp/rigid --quiet --output_path /tmp/rigid_run
-for test in "$root"/tmp/tests/{camera,convert_arrays,cost,errors_and_options,extensions,jobs,kernels,reading,sequence,track_arrays,tracking}_test.py; do
-  name=$(basename "$test")
-  inside env PLIANT_TEST_SEQUENCE=/tmp/rigid PLIANT_TEST_RUN=/tmp/rigid_run python3 -B "/tmp/tests/$name" \
-    >"$root/tmp/test.log" 2>&1 || { tail -n 30 "$root/tmp/test.log"; exit 1; }
-  echo "$name: $(grep -E '^Ran ' "$root/tmp/test.log")"
-done
+test_python python3
 
 say "libpliant-dev"
 install "$(package libpliant-dev)" cmake g++ make
@@ -110,9 +114,21 @@ done <"$root/tmp/files"
 left=$(find "$root" -xdev -iname '*pliant*' -not -path "$root/tmp/*" -not -path "$root/proc/*" -printf '/%P\n')
 if [[ -n $left ]]; then echo "left: $left" && status=1; fi
 if inside dpkg-query -W "${names[@]}" 2>/dev/null; then status=1; fi
-if ((status == 0)); then
-  echo "nothing is left of them"
-  leave_proc
-  rm -rf --one-file-system "$root"
-fi
-exit "$status"
+if ((status != 0)); then exit "$status"; fi
+echo "nothing is left of them"
+
+# The libraries that the packages brought are still there, as docs/building.md asks of who installs the wheel.
+say "the wheel"
+install python3-venv
+cp "$packages"/*.whl "$root/tmp"
+inside python3 -m venv --system-site-packages /tmp/environment
+inside bash -c '/tmp/environment/bin/pip install --quiet --no-index /tmp/pliant-*.whl'
+inside /tmp/environment/bin/python -c 'import pliant; print(pliant.__version__, pliant.__file__)'
+test_python /tmp/environment/bin/python
+inside /tmp/environment/bin/pip uninstall --quiet --yes pliant
+left=$(find "$root/tmp/environment" -iname '*pliant*' -printf '/%P\n')
+if [[ -n $left ]]; then echo "left: $left" && exit 1; fi
+echo "nothing is left of it"
+
+leave_proc
+rm -rf --one-file-system "$root"
