@@ -277,7 +277,7 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
 def refine(run: RunOrPath, output_path: StrPath, options: OptionValues | None = None, *,
            sequence: StrPath | None = None, camera: StrPath | None = None,
            on_progress: Callable[[str, float, float], Any] | None = None) -> Run:
-    """Solves for all frames of a run at once. Ctrl-C ends it with the best so far, if there is any.
+    """Solves for all frames of a run at once. Ctrl-C ends it with the last solution of all frames, if there is one.
 
     Args:
         run: a run or its folder.

@@ -19,7 +19,7 @@ const Manual kRefineManual = {
     "run.\n\n"
     "Leaves in --output_path a run folder that evaluate, compare, export and report read like the run's own, with how "
     "certain its points (sigma_mm) and poses (pose_covariance.csv) are. Nothing is written before the refinement is "
-    "done; Ctrl-C ends it with the best so far, if it has found any.",
+    "done; Ctrl-C ends it with the last solution of all frames, if there is one.",
     {"pliant refine --run run --output_path refined",
      "pliant refine --run run --Refine.model rigid --output_path rigid"},
 };

@@ -51,7 +51,7 @@ int RefineAndSay(const RefineRequest& request, const RefineOptions& options) {
   for (const SubmapRefinement& submap : summary->submaps) Say(submap);
   SayResult(request.output_path);
   if (!summary->stopped) return kExitOk;
-  SayError("the refinement was stopped before its end; the best until then is in " + request.output_path);
+  SayError("the refinement was stopped before its end; the last solution of all frames is in " + request.output_path);
   return kExitFailed;
 }
 

@@ -48,17 +48,28 @@ Status CheckPaths(const RefineRequest& request) {
   return Status::Ok();
 }
 
+bool IsByMotion(const FirstMapFrames& map) {
+  return map.evidence.depth_sigma > 0.0 || map.evidence.median_parallax_deg > 0.0;
+}
+
 // (F7) Depths that the run has found by motion come from the pixels that are used again: they are a start, and no
-// measurement. Those of a pair, of depth images or of another program may say more. A run that was killed does not say
-// what its maps rest on.
+// measurement. Those of a network or of another program may say more. A run that was killed does not say what its maps
+// rest on.
 double LogDepthSigmaOf(const RunSummary& summary) {
   constexpr double kFromElsewhere = 0.1;
   const RunDescription& run = summary.description;
   const bool was_killed = summary.first_maps.empty() && run.metric == false && run.depth_prior.empty();
-  const bool by_motion = was_killed || std::ranges::any_of(summary.first_maps, [](const auto& map) {
-                           return map.evidence.depth_sigma > 0.0 || map.evidence.median_parallax_deg > 0.0;
-                         });
+  const bool by_motion = was_killed || std::ranges::any_of(summary.first_maps, IsByMotion);
   return by_motion ? kStartLogDepthSigma : kFromElsewhere;
+}
+
+// (F7) The view whose distances a pair or a depth image has measured; -1: there is none.
+int MeasuredViewOf(const RunSummary& summary, const std::map<int, int>& view_of_frame) {
+  if (summary.description.metric != true) return -1;
+  for (const FirstMapFrames& map : summary.first_maps)
+    if (const auto view = view_of_frame.find(map.reference_frame_idx); !IsByMotion(map) && view != view_of_frame.end())
+      return view->second;
+  return -1;
 }
 
 // Means over the observations of each point.
@@ -102,6 +113,7 @@ Result<std::map<int, RefinedSubmap>> ReadSubmaps(const std::string& path, const 
   for (auto& [number, submap] : submaps) {
     SetRestPositions(&submap.recording);
     submap.recording.log_depth_sigma = LogDepthSigmaOf(*run.summary);
+    submap.recording.measured_view_idx = MeasuredViewOf(*run.summary, submap.view_of_frame);
     if (description.patch_size > 0) submap.recording.patch_px = description.patch_size / description.image_scale;
   }
   return submaps;
@@ -228,7 +240,10 @@ Result<RefinedFocalLength> EstimateFocalLength(const RefineOptions& options, con
   if (!calibration.ok()) return focal_length;
   known->camera = calibration->camera;
   // Depths under another focal length are a start, and no measurement.
-  for (auto& [number, submap] : *submaps) submap.recording.log_depth_sigma = kStartLogDepthSigma;
+  for (auto& [number, submap] : *submaps) {
+    submap.recording.log_depth_sigma = kStartLogDepthSigma;
+    submap.recording.measured_view_idx = -1;
+  }
   return focal_length;
 }
 
@@ -258,9 +273,10 @@ Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& opti
     if (Status status = writer->Write(reporter.Report(frame)); !status.ok()) return status;
   if (has_new_camera)
     if (Status status = WriteCameraFile(camera_file, {*known.camera}); !status.ok()) return status;
-  const Status finished =
-      was_stopped ? writer->Finish(RunStatus::kInterrupted, "the refinement was stopped; this is the best until then")
-                  : writer->Finish(run.summary->status, run.summary->note);
+  const Status finished = was_stopped
+                              ? writer->Finish(RunStatus::kInterrupted,
+                                               "the refinement was stopped; this is its last solution of all frames")
+                              : writer->Finish(run.summary->status, run.summary->note);
   if (!finished.ok()) return finished;
   return writer->summary();
 }

@@ -82,6 +82,19 @@ std::vector<Eigen::Vector2d> ReprojectionErrors(const Camera& camera, const Reco
   return errors;
 }
 
+std::vector<double> MeasuredDistanceErrors(const Recording& recording, const std::vector<bool>& used,
+                                           const BundleState& state) {
+  std::vector<double> errors;
+  for (std::size_t o = 0; o < used.size(); ++o) {
+    const RecordedObservation& seen = recording.observations[o];
+    if (!used[o] || seen.view_idx != recording.measured_view_idx) continue;
+    const auto view = static_cast<std::size_t>(seen.view_idx);
+    errors.push_back(std::log((state.cams_from_world[view] * state.Position(seen.point_idx, seen.view_idx)).norm() /
+                              (recording.cams_from_world[view] * seen.position).norm()));
+  }
+  return errors;
+}
+
 double MedianDistance(const Recording& recording) {
   std::vector<double> distances;
   for (const RecordedObservation& o : recording.observations)

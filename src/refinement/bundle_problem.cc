@@ -191,8 +191,20 @@ void BundleProblem::AddDistances() {
     if (input_.used[o])
       views[static_cast<std::size_t>(input_.recording.observations[o].point_idx)].push_back(
           input_.recording.observations[o].view_idx);
+  std::vector<bool> is_measured(points_.size(), false);
+  for (std::size_t o = 0; o < input_.used.size(); ++o) {
+    const RecordedObservation& seen = input_.recording.observations[o];
+    if (!input_.used[o] || seen.view_idx != input_.recording.measured_view_idx) continue;
+    const auto view = static_cast<std::size_t>(seen.view_idx);
+    const auto point = static_cast<std::size_t>(seen.point_idx);
+    is_measured[point] = true;
+    if (!is_point_in_problem_[point]) continue;
+    const double distance = (input_.recording.cams_from_world[view] * seen.position).norm();
+    problem_->AddResidualBlock(NewDistanceCost(poses_[view], distance, input_.sigmas.measured_log_distance, rank_),
+                               nullptr, views_[view], points_[point]);
+  }
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!is_point_in_problem_[i]) continue;
+    if (!is_point_in_problem_[i] || is_measured[i]) continue;
     const auto view = static_cast<std::size_t>(views[i][views[i].size() / 2]);
     const double distance = (input_.recording.cams_from_world[view] * input_.recording.rest_positions[i]).norm();
     problem_->AddResidualBlock(NewDistanceCost(poses_[view], distance, input_.sigmas.log_distance, rank_), nullptr,

@@ -43,8 +43,9 @@ int StrideOfKeyViews(const Recording& recording, const std::vector<bool>& used, 
 std::vector<bool> UsedInKeyViews(const Recording& recording, const std::vector<bool>& used, int stride) {
   if (stride == 1) return used;
   std::vector<bool> in_key_views = used;
+  const int first = std::max(0, recording.measured_view_idx) % stride;
   for (std::size_t o = 0; o < used.size(); ++o)
-    in_key_views[o] = used[o] && recording.observations[o].view_idx % stride == 0;
+    in_key_views[o] = used[o] && recording.observations[o].view_idx % stride == first;
   KeepDetermined(recording, &in_key_views);
   return in_key_views;
 }

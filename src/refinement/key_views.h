@@ -14,7 +14,8 @@ namespace pliant {
 // Every so many views the median track (over the observations) has `views_per_track` of them; at least 1.
 int StrideOfKeyViews(const Recording& recording, const std::vector<bool>& used, int views_per_track);
 
-// Of the used observations those in every `stride`-th view, of points and views with enough of them.
+// Of the used observations those in every `stride`-th view, that of measured distances among them, of points and views
+// with enough of them.
 std::vector<bool> UsedInKeyViews(const Recording& recording, const std::vector<bool>& used, int stride);
 
 // Leaves out the observations of points that too few views see, and of views that see too few points, for a part in a

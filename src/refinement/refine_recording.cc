@@ -21,9 +21,18 @@ constexpr int kRounds = 2;  // solutions of few views, each with the sigmas and 
 constexpr int kFewViewsPerTrack = 15;      // of the median track, in these; with all of them follows one more solution
 constexpr double kUsualIterations = 10.0;  // of a solution
 constexpr double kMinShapeSigma = 0.002;   // below it a scene moves by less than its noise
+// (F7) Of distances that were measured.
+constexpr double kMinMeasuredSigma = 0.002;
+constexpr double kMaxMeasuredSigma = 0.1;
 constexpr double kMinWrongTrackPx = 0.5;
 constexpr int kRankStep = 2;
 constexpr double kSignificant = 2.0;  // times its standard error: then a correlation asks for more shapes
+
+// About zero, by the median.
+double Sigma(std::vector<double> errors) {
+  for (double& error : errors) error = std::abs(error);
+  return kMedianToSigma * Median(errors);
+}
 
 // Of a solution for every so many views, up to a factor: the square of the numbers of a point in each of them.
 double WorkOf(int rank, int stride) { return (1.0 + rank) * (1.0 + rank) / stride; }
@@ -48,12 +57,13 @@ class Refinement {
     if (options_.model == RefinementModel::kAuto) {
       work_ += WorkOf(0, wide_stride_);
       if (Status status = SolveForFewViews("rigid", 1, &state); !status.ok()) return status;
-      if (stopped_) return {ErrorCode::kInterrupted, "it was stopped before anything better was found"};
+      if (stopped_) return Interrupted();
       refined_.residual_correlation = CorrelationOf(state, wide_stride_).value;
       rigid = refined_.residual_correlation <= options_.max_correlation;
       if (rigid) work_ = WorkOf(0, wide_stride_) + WorkOfAll(0);
     }
     if (Status status = rigid ? Solve("rigid", &state) : SolveDeforming(&state); !status.ok()) return status;
+    if (!is_whole_) return Interrupted();
     refined_.deforming = !rigid;
     refined_.is_inlier = input_.used;
     const double scale = ScaleToStart(state);
@@ -65,6 +75,13 @@ class Refinement {
   }
 
  private:
+  // A solution of few views, or one on its way, may be further from the truth than the start is.
+  static Status Interrupted() {
+    return {ErrorCode::kInterrupted,
+            "it was stopped before all frames were solved for once, and what there is until "
+            "then is not better than the run"};
+  }
+
   // With more and more shapes, until neighbors' residuals are not alike any more. One that was stopped, or failed,
   // leaves the one before.
   Status SolveDeforming(BundleState* state) {
@@ -124,7 +141,8 @@ class Refinement {
     if (Status status = FollowKeyViews(wide_stride_, state); !status.ok() || stopped_) return status;
     RejectWrongTracks(*state, input_.used);  // also those that few views did not see
     SetFoundSigmas(*state, input_.used);     // few views leave residuals that are too small: more of them adapts
-    if (Status status = SolveKeyViews(stage, stride_, state); !status.ok()) return status;
+    if (Status status = SolveKeyViews(stage, stride_, state); !status.ok() || stopped_) return status;
+    is_whole_ = true;
     return FollowKeyViews(stride_, state);
   }
 
@@ -177,6 +195,8 @@ class Refinement {
     const auto errors_px = ReprojectionErrors(input_.camera, start_, state);
     input_.sigmas.noise_px = NoisePx(errors_px, used);
     refined_.noise_px = input_.sigmas.noise_px;
+    if (const auto errors = MeasuredDistanceErrors(start_, used, state); !errors.empty())
+      input_.sigmas.measured_log_distance = std::clamp(Sigma(errors), kMinMeasuredSigma, kMaxMeasuredSigma);
     if (state.rank() == 0) return;
     const ShapeSizes sizes = SizesOf(state.nodes);
     input_.sigmas.size = std::max(kMinShapeSigma, sizes.size / input_.distance);
@@ -229,7 +249,9 @@ class Refinement {
            (state.cams_from_world[view] * state.Position(o.point_idx, o.view_idx)).norm();
   }
 
+  // Where distances were measured the solution has their unit.
   double ScaleToStart(const BundleState& state) const {
+    if (start_.measured_view_idx >= 0) return 1.0;
     std::vector<double> ratios;
     for (std::size_t o = 0; o < input_.used.size(); ++o)
       if (input_.used[o]) ratios.push_back(DistanceRatio(state, start_.observations[o]));
@@ -268,6 +290,7 @@ class Refinement {
   double work_ = 0.0;  // of all solutions that are known to be needed
   double work_done_ = 0.0;
   bool stopped_ = false;
+  bool is_whole_ = false;  // one model was solved for to its end
 };
 
 }  // namespace

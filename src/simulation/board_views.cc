@@ -18,10 +18,10 @@ namespace {
 constexpr double kTremorMargin = 0.02;  // of the image's width
 constexpr double kNearestMm = 5.0;      // of a point before the camera
 
-// The points on the outline of the squares; of circles, half a spacing around them.
+// A spacing around the points: around all squares, and well around circles. Points at the edge of the image are found
+// less well.
 std::vector<Eigen::Vector3d> Outline(const CalibrationBoard& board) {
-  const bool has_squares = board.kind == BoardKind::kChessboard || board.kind == BoardKind::kCharuco;
-  const double rim_mm = (has_squares ? 1.0 : 0.5) * board.spacing_mm;
+  const double rim_mm = board.spacing_mm;
   Eigen::Vector3d last = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : board.Points()) last = last.cwiseMax(point);
   std::vector<Eigen::Vector3d> outline;

@@ -163,20 +163,18 @@ TEST_F(RefineRunTest, AnOutputFolderWithOtherFilesIsRefused) {
   EXPECT_EQ(folder_.Read("mine/notes.txt"), "keep");
 }
 
-TEST_F(RefineRunTest, AStopLeavesAWholeRun) {
+TEST_F(RefineRunTest, AStopBeforeAllFramesWereSolvedForLeavesNothing) {
   WriteRun(folder_);
   const std::atomic<bool> stop = true;
   RefineRequest request;
   request.run_path = folder_.Path("run");
   request.output_path = folder_.Path("refined");
   request.stop = &stop;
-  const auto early = RefineRun(request, {}, {});
-  EXPECT_EQ(early.status().code(), ErrorCode::kInterrupted) << "nothing is known of the scene yet";
-  EXPECT_FALSE(std::filesystem::exists(request.output_path));
-  const auto summary = RefineRun(request, {.model = RefinementModel::kRigid}, {});
-  ASSERT_TRUE(summary.ok()) << summary.status().message();
-  EXPECT_TRUE(summary->stopped);
-  EXPECT_EQ(summary->run.frames_tracked, kRunFrames);
+  for (const RefinementModel model : {RefinementModel::kAuto, RefinementModel::kRigid}) {
+    const auto early = RefineRun(request, {.model = model}, {});
+    EXPECT_EQ(early.status().code(), ErrorCode::kInterrupted);
+    EXPECT_FALSE(std::filesystem::exists(request.output_path));
+  }
 }
 
 // A focal length that was estimated is that of a refined run alone.

@@ -24,7 +24,7 @@ struct RefineRequest {
   std::string output_path;                // a folder, made if need be; not the run's
   std::vector<std::string> command_line;  // for run.json
   const std::atomic<bool>* stop =
-      nullptr;  // becomes true when the best so far is to be written, if there is any; may be null
+      nullptr;  // becomes true when the last solution of all frames is to be written, if there is one; may be null
 };
 
 // What became of one submap.
@@ -54,7 +54,7 @@ struct RefineSummary {
   std::vector<SubmapRefinement> submaps;
   std::optional<RefinedFocalLength> focal_length;
   RunSummary run;        // of the refined run
-  bool stopped = false;  // on request: the best so far was written
+  bool stopped = false;  // on request: the last solution of all frames was written
 };
 
 using RefineProgress = std::function<void(const RefinementProgress&)>;

@@ -80,6 +80,7 @@ struct Recording {
   std::vector<RecordedObservation> observations;  // sorted by view
   double patch_px = 15;                           // side of a tracked patch, in the camera's pixels
   double log_depth_sigma = 0.3;                   // (F7) of the points' distances, by other than these pixels
+  int measured_view_idx = -1;  // (F7) where distances were measured by other than these pixels; -1: nowhere
 };
 
 struct RefinedRecording {
@@ -96,10 +97,10 @@ struct RefinedRecording {
   double noise_px = 0;              // standard deviation of a pixel coordinate, as found
   double initial_cost = 0;          // of the last solution, at its start and end
   double final_cost = 0;
-  bool stopped = false;  // by the callback: the best so far
+  bool stopped = false;  // by the callback: the solution with fewer shapes
 };
 
-// What is known while it goes on; false ends it with the best so far.
+// What is known while it goes on; false ends it, with the solution of fewer shapes where there is one.
 struct RefinementProgress {
   std::string_view stage;  // "rigid", "deforming", "uncertainty"
   double cost = 0;         // of the last iteration
