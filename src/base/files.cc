@@ -138,7 +138,7 @@ Result<OutputFile> OutputFile::Continue(const std::string& path, std::int64_t si
 
 Status OutputFile::Failure() const {
   return {ErrorCode::kUnwritable,
-          "cannot write " + Quoted(path_) + ": " + Reason(errno) + "; what was written before stays"};
+          "cannot write " + Quoted(path_) + ": " + Reason(errno) + "; is there room on the disk?"};
 }
 
 Status OutputFile::Append(std::string_view text) {

@@ -14,8 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kUnfinished = ".unfinished";
-
 // What is in `from` is to be in `to`.
 void AddRenamings(const fs::path& from, const fs::path& to, std::vector<Renaming>* renamings, std::error_code* error) {
   for (fs::directory_iterator entry(from, *error), end; !*error && entry != end; entry.increment(*error)) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/run_format.h"
+#include "pliant/base/staged_folder.h"
 #include "pliant/base/text.h"
 #include "pliant/io/run_summary.h"
 #include "pliant/io/run_writer.h"
@@ -109,16 +110,23 @@ FormerRun::FormerRun(FormerRun&& other) noexcept : folder_(std::exchange(other.f
 
 FormerRun::~FormerRun() { Restore(); }
 
+Status FormerRun::CheckFolder(const std::string& folder) {
+  std::error_code error;
+  bool is_empty = true;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    is_empty = is_empty && entry->path().filename() == StagedFolder::kUnfinished;
+  if (error) return UnwritableFolder(folder, error);
+  if (is_empty || fs::exists(fs::path(folder) / kAside, error) || ReadRunSummary(folder + "/run.json").ok())
+    return Status::Ok();
+  return {ErrorCode::kInvalidArgument,
+          "the folder " + Quoted(folder) + " holds files that are not a run's; give a new or an empty folder"};
+}
+
 Result<FormerRun> FormerRun::SetAside(const std::string& folder) {
+  if (Status status = CheckFolder(folder); !status.ok()) return status;
   const fs::path aside = fs::path(folder) / kAside;
   std::error_code error;
   const bool was_aside = fs::exists(aside, error);
-  const bool is_empty = fs::is_empty(folder, error);
-  if (error) return UnwritableFolder(folder, error);
-  if (is_empty) return FormerRun({});
-  if (!ReadRunSummary(folder + "/run.json").ok() && !was_aside)
-    return Status(ErrorCode::kInvalidArgument,
-                  "the folder " + Quoted(folder) + " holds files that are not a run's; give a new or an empty folder");
   if (HoldsRun(folder)) {
     fs::remove_all(aside, error);
     if (Status moved = MoveRun(folder, aside); !moved.ok()) {

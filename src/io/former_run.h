@@ -21,9 +21,10 @@ Status DeleteResults(const std::filesystem::path& folder);
 
 class FormerRun {
  public:
+  // Fails with kInvalidArgument where the folder, which is there, holds something else and no run, and kUnwritable.
+  static Status CheckFolder(const std::string& folder);
   // Moves the files of a run that has poses from `folder` into a subfolder, and deletes those of one that has none.
-  // What a killed run had set aside stays so. Fails with kInvalidArgument where the folder holds something else and no
-  // run, and kUnwritable.
+  // What a killed run had set aside stays so. Fails as CheckFolder does.
   static Result<FormerRun> SetAside(const std::string& folder);
   // What was set aside by a run that is resumed.
   static FormerRun OfResumed(const std::string& folder);

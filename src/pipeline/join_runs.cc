@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/staged_run.h"
 #include "pipeline/joined_reports.h"
 #include "pipeline/part_joiner.h"
 #include "pipeline/run_parts.h"
@@ -78,7 +79,9 @@ Result<RunSummary> WriteJoined(const JoinRequest& request, const JoinOptions& op
   RunWriterOptions writer_options;
   writer_options.total_s = 0.0;
   for (const RunPart& part : parts) *writer_options.total_s += part.run.summary->total_s;
-  auto writer = RunWriter::Create(request.output_path, *parts.front().known.camera, JoinedDescription(request, parts),
+  auto staged = StagedRun::Create(request.output_path);
+  if (!staged.ok()) return staged.status();
+  auto writer = RunWriter::Create(staged->path(), *parts.front().known.camera, JoinedDescription(request, parts),
                                   table.ToYaml(), {}, writer_options);
   if (!writer.ok()) return writer.status();
   std::vector<ObservationReader> readers;
@@ -94,6 +97,7 @@ Result<RunSummary> WriteJoined(const JoinRequest& request, const JoinOptions& op
     if (Status status = writer->Write(reports.Report(part, frame_idx, *std::move(seen))); !status.ok()) return status;
   }
   if (Status status = FinishAsParts(parts, &*writer); !status.ok()) return status;
+  if (Status status = staged->Commit(); !status.ok()) return status;
   return writer->summary();
 }
 

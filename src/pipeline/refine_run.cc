@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/staged_run.h"
 #include "pipeline/run_frames.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
@@ -265,19 +266,22 @@ Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& opti
   description.program_version = kVersion;
   description.command_line = request.command_line;
   description.refined_from = std::filesystem::absolute(request.run_path).lexically_normal().string();
-  const std::string camera_file = request.output_path + "/" + native::kCameraFile;
-  if (has_new_camera) description.camera = camera_file;
-  auto writer = RunWriter::Create(request.output_path, *known.camera, description, table.ToYaml(), {}, writer_options);
+  if (has_new_camera) description.camera = request.output_path + "/" + native::kCameraFile;
+  auto staged = StagedRun::Create(request.output_path);
+  if (!staged.ok()) return staged.status();
+  auto writer = RunWriter::Create(staged->path(), *known.camera, description, table.ToYaml(), {}, writer_options);
   if (!writer.ok()) return writer.status();
   for (const RunFrame& frame : run.frames)
     if (Status status = writer->Write(reporter.Report(frame)); !status.ok()) return status;
   if (has_new_camera)
-    if (Status status = WriteCameraFile(camera_file, {*known.camera}); !status.ok()) return status;
+    if (Status status = WriteCameraFile(staged->path() + "/" + native::kCameraFile, {*known.camera}); !status.ok())
+      return status;
   const Status finished = was_stopped
                               ? writer->Finish(RunStatus::kInterrupted,
                                                "the refinement was stopped; this is its last solution of all frames")
                               : writer->Finish(run.summary->status, run.summary->note);
   if (!finished.ok()) return finished;
+  if (Status status = staged->Commit(); !status.ok()) return status;
   return writer->summary();
 }
 

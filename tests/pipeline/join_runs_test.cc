@@ -16,6 +16,7 @@
 
 #include "pliant/geometry/sim3.h"
 #include "pliant/io/run_reader.h"
+#include "support/small_files.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"
 
@@ -154,6 +155,20 @@ TEST_F(JoinRunsTest, OfTwoPartsIsTheWhole) {
   EXPECT_THAT(description.joined_from, testing::ElementsAre(folder_.Path("first"), folder_.Path("second")));
   EXPECT_EQ(description.range, (FrameSelection{0, 20, 1}));
   EXPECT_EQ(description.refined_from, "");  // it is of several
+}
+
+TEST_F(JoinRunsTest, OnAFullDiskTheFormerOneStays) {
+  Write({.name = "first", .first = 0, .end = 12});
+  Write({.name = "second", .first = 8, .end = 20, .world_from_truth = kOther, .first_id = 1000});
+  ASSERT_TRUE(Join().ok());
+  const std::string rows = folder_.Read("joined/observations.csv");
+  {
+    const SmallFiles full_disk(rows.size() / 2);
+    EXPECT_EQ(Join().status().code(), ErrorCode::kUnwritable);
+  }
+  EXPECT_EQ(folder_.Read("joined/observations.csv"), rows);
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("joined/.unfinished")));
+  ExpectTruth(0, 20);
 }
 
 TEST_F(JoinRunsTest, PartsMayBeManyAndInAnyOrder) {

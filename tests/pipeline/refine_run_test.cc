@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -15,6 +16,7 @@
 
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
+#include "support/small_files.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"
 #include "support/tolerances.h"
@@ -153,6 +155,48 @@ TEST_F(RefineRunTest, WhatFailsLeavesTheOutputAsItWas) {
   ASSERT_FALSE(summary.ok());
   EXPECT_THAT(summary.status().message(), HasSubstr("points"));
   EXPECT_EQ(folder_.Read("refined/observations.csv"), before);
+}
+
+TEST_F(RefineRunTest, OnAFullDiskAppearsWholeOrNotAtAll) {
+  WriteRun(folder_);
+  ASSERT_TRUE(Refine("whole").ok());
+  const auto size = std::filesystem::file_size(folder_.Path("whole/observations.csv"));
+  const auto names = [&] {
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.Path("refined")))
+      found.insert(entry.path().string());
+    return found;
+  };
+  const auto fail = [&] {
+    for (const auto bytes : {size / 4, size / 2, size - 1}) {
+      const SmallFiles full_disk(bytes);
+      EXPECT_EQ(Refine().status().code(), ErrorCode::kUnwritable) << bytes;
+    }
+  };
+  fail();
+  EXPECT_TRUE(names().empty());
+  ASSERT_TRUE(Refine().ok()) << "what failed before is in nobody's way";
+  const std::set<std::string> whole = names();
+  const std::string rows = folder_.Read("refined/observations.csv");
+  const std::string frames = folder_.Read("refined/frames.csv") + "\n";  // tells it from a new one
+  folder_.Write("refined/frames.csv", frames);
+  fail();
+  EXPECT_EQ(names(), whole);
+  EXPECT_EQ(folder_.Read("refined/observations.csv"), rows);
+  EXPECT_EQ(folder_.Read("refined/frames.csv"), frames);
+  ASSERT_TRUE(Refine().ok());
+  EXPECT_EQ(names(), whole);
+  EXPECT_NE(folder_.Read("refined/frames.csv"), frames);
+}
+
+// What a killed program leaves.
+TEST_F(RefineRunTest, AnUnfinishedOneIsInNobodysWay) {
+  WriteRun(folder_);
+  std::filesystem::create_directories(folder_.Path("refined/.unfinished"));
+  folder_.Write("refined/.unfinished/run.json", "half");
+  ASSERT_TRUE(Refine().ok());
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("refined/.unfinished")));
+  EXPECT_TRUE(ReadRun(folder_.Path("refined")).ok());
 }
 
 TEST_F(RefineRunTest, AnOutputFolderWithOtherFilesIsRefused) {

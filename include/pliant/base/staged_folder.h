@@ -19,6 +19,9 @@ Status CheckAbsent(const std::filesystem::path& folder, const std::vector<std::s
 
 class StagedFolder {
  public:
+  // The subfolder in which entries are written. A program that was killed leaves it; the next one deletes it.
+  static constexpr const char* kUnfinished = ".unfinished";
+
   // `names` may appear in `folder`, which is made if need be. Fails as CheckAbsent does, and with kUnwritable, also
   // while another one writes there.
   static Result<StagedFolder> Create(const std::filesystem::path& folder, const std::vector<std::string>& names);
@@ -26,7 +29,8 @@ class StagedFolder {
   StagedFolder& operator=(StagedFolder&&) = delete;
   ~StagedFolder();  // what was not committed is deleted
 
-  // Where an entry is written until Commit.
+  // Where entries are written until Commit, and one of them.
+  const std::filesystem::path& path() const { return staged_; }
   std::filesystem::path Path(const std::string& name) const { return staged_ / name; }
   // Makes a subfolder. Fails with kUnwritable.
   Status AddFolder(const std::string& name) const;

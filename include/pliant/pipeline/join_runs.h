@@ -55,7 +55,8 @@ struct JoinSummary {
 // kMismatch for a run that cannot be read, is another program's, or is not of the same images, calibration and stride
 // as the first, kInsufficient where no run has a pose, kInvalidArgument for an output folder that is one of the runs'
 // or holds something else, kUnwritable, and kInterrupted where `progress` asks to stop, which is heeded until the
-// joints are known: before, the output folder is not touched.
+// joints are known: before, the output folder is not touched. The joined run appears in it whole, and where that fails
+// what was there before is still there.
 Result<JoinSummary> JoinRuns(const JoinRequest& request, const JoinOptions& options, const JobProgress& progress);
 
 }  // namespace pliant

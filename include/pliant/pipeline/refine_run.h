@@ -63,7 +63,8 @@ using RefineProgress = std::function<void(const RefinementProgress&)>;
 // run, whose folder then holds its camera.yaml; where the recording does not determine it the camera's is kept. Fails
 // with kNotFound, kUnreadable or kMismatch for a run that cannot be read, kInsufficient for one without points or of a
 // single frame, kInvalidArgument for an output folder that is the run's or holds something else, kUnwritable. The
-// output folder is not touched before the refinement is done.
+// output folder is not touched before the refinement is done; the refined run then appears in it whole, and where that
+// fails what was there before is still there.
 Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOptions& options,
                                 const RefineProgress& callback);
 
