@@ -56,8 +56,9 @@ int JoinCommand(std::span<const std::string> args) {
   if (const auto exit = line.Resolve(table)) return *exit;
   if (request.run_paths.size() < 2) return line.UsageError("two or more runs are joined: give --run twice");
 
-  if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
   request.output_path = output.path;
+  if (const Status status = CheckPaths(request); !status.ok()) return line.UsageError(status.message());
+  if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
   request.command_line = line.Words(args);
   const auto summary = [&] {
     JobBars bars(StopOnSignals());

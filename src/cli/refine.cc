@@ -39,8 +39,9 @@ int RefineCommand(std::span<const std::string> args) {
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
-  if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
   request.output_path = output.path;
+  if (const Status status = CheckPaths(request); !status.ok()) return line.UsageError(status.message());
+  if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
   request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
   return RefineAndSay(request, options);

@@ -12,6 +12,7 @@
 #include "io/staged_run.h"
 #include "pipeline/joined_reports.h"
 #include "pipeline/part_joiner.h"
+#include "pipeline/run_frames.h"
 #include "pipeline/run_parts.h"
 #include "pliant/base/text.h"
 #include "pliant/base/version.h"
@@ -21,20 +22,6 @@ namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-Status CheckRunPaths(const JoinRequest& request) {
-  if (request.run_paths.size() < 2) return {ErrorCode::kInvalidArgument, "two or more runs are joined; give more"};
-  for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
-    std::error_code error;
-    if (fs::equivalent(request.run_paths[i], request.output_path, error))
-      return {ErrorCode::kInvalidArgument, "the joined run would overwrite the run " + Quoted(request.run_paths[i]) +
-                                               "; give another --output_path"};
-    for (std::size_t j = 0; j < i; ++j)
-      if (fs::equivalent(request.run_paths[i], request.run_paths[j], error))
-        return {ErrorCode::kInvalidArgument, "the run " + Quoted(request.run_paths[i]) + " was given twice"};
-  }
-  return Status::Ok();
-}
 
 // Those that are not there yet.
 void AddNames(const std::vector<std::string>& names, std::vector<std::string>* all) {
@@ -114,8 +101,21 @@ void JoinOptions::List(OptionTable& table) {
             "between two points that are one, in most frames in which both are seen", 1e-5, 1);
 }
 
+Status CheckPaths(const JoinRequest& request) {
+  if (request.run_paths.size() < 2) return {ErrorCode::kInvalidArgument, "two or more runs are joined; give more"};
+  for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
+    if (Status status = CheckOutsideOfRun(request.run_paths[i], request.output_path, "joined"); !status.ok())
+      return status;
+    std::error_code error;
+    for (std::size_t j = 0; j < i; ++j)
+      if (fs::equivalent(request.run_paths[i], request.run_paths[j], error))
+        return {ErrorCode::kInvalidArgument, "the run " + Quoted(request.run_paths[i]) + " was given twice"};
+  }
+  return Status::Ok();
+}
+
 Result<JoinSummary> JoinRuns(const JoinRequest& request, const JoinOptions& options, const JobProgress& progress) {
-  if (Status status = CheckRunPaths(request); !status.ok()) return status;
+  if (Status status = CheckPaths(request); !status.ok()) return status;
   auto parts = ReadParts(request, progress);
   if (!parts.ok()) return parts.status();
   PartJoiner joiner(&*parts, options);

@@ -11,7 +11,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "io/staged_run.h"
@@ -40,14 +39,6 @@ struct RefinedSubmap {
 };
 
 constexpr double kStartLogDepthSigma = 0.3;  // keeps those in the scene of which pixels say nothing
-
-Status CheckPaths(const RefineRequest& request) {
-  std::error_code error;
-  if (std::filesystem::equivalent(request.run_path, request.output_path, error))
-    return {ErrorCode::kInvalidArgument,
-            "the refined run would overwrite the run " + Quoted(request.run_path) + "; give another --output_path"};
-  return Status::Ok();
-}
 
 bool IsByMotion(const FirstMapFrames& map) {
   return map.evidence.depth_sigma > 0.0 || map.evidence.median_parallax_deg > 0.0;
@@ -286,6 +277,10 @@ Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& opti
 }
 
 }  // namespace
+
+Status CheckPaths(const RefineRequest& request) {
+  return CheckOutsideOfRun(request.run_path, request.output_path, "refined");
+}
 
 Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOptions& options,
                                 const RefineProgress& callback) {

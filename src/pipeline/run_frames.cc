@@ -3,9 +3,26 @@
 
 #include "pipeline/run_frames.h"
 
+#include <filesystem>
+#include <system_error>
+
 #include "pliant/base/text.h"
 
 namespace pliant {
+
+Status CheckOutsideOfRun(const std::string& run_path, const std::string& output_path, std::string_view kind) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path run = fs::canonical(run_path, error);
+  if (error) return Status::Ok();  // what is not there is not overwritten
+  const fs::path output = fs::weakly_canonical(fs::absolute(output_path), error);
+  if (error) return Status::Ok();  // whoever writes there says why that cannot be
+  const fs::path from_run = output.lexically_relative(run);
+  if (from_run.empty() || *from_run.begin() == "..") return Status::Ok();
+  const std::string what = "the " + std::string(kind) + " run would ";
+  return {ErrorCode::kInvalidArgument, what + (from_run == "." ? "overwrite the run " : "be written inside the run ") +
+                                           Quoted(run_path) + "; give another --output_path"};
+}
 
 Result<std::vector<int>> FramesWithPose(const std::string& path, const Run& run) {
   std::vector<int> frames_idx;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pliant/base/status.h"
@@ -14,6 +15,10 @@
 #include "pliant/scene/frame_report.h"
 
 namespace pliant {
+
+// That a run that is made of the one at `run_path` is written elsewhere: neither in its place nor in its folder.
+// `kind`: what is made, for the message. Fails with kInvalidArgument.
+Status CheckOutsideOfRun(const std::string& run_path, const std::string& output_path, std::string_view kind);
 
 // The frame of every pose of `run`, which was read from `path`. Fails with kMismatch for another program's result,
 // whose poses belong to no frame.

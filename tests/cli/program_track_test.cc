@@ -159,6 +159,19 @@ TEST(Program, WhatIsThereIsReplacedOnRequestOnly) {
   EXPECT_EQ(Pliant(import + " --overwrite").exit, 0);
 }
 
+TEST(Program, ARefinedOrJoinedRunNeedsAFolderOfItsOwn) {
+  const std::string run = ForeignResult("run", 3);
+  const std::string other = ForeignResult("other", 3);
+  std::ofstream(run + "/run.json") << "{}";
+  for (const std::string& command : {"refine '" + run + "'", "join '" + other + "' '" + run + "'"})
+    for (const std::string ending : {"' --overwrite", "'", "/sub'"}) {
+      const Outcome outcome = Pliant(command + " -o '" + run + ending);
+      EXPECT_EQ(outcome.exit, 2) << command << ending;
+      EXPECT_THAT(outcome.err, HasSubstr("the run '" + run + "'; give another --output_path\n"));
+      EXPECT_THAT(outcome.err, Not(HasSubstr("--overwrite")));
+    }
+}
+
 TEST(Program, ResumeNeedsARunAndAFinishedOneHasNothingToDo) {
   EXPECT_THAT(Pliant("track x --resume").err, HasSubstr("name it with --output_path"));
   const Outcome both = Pliant("track x --output_path y --resume --overwrite");

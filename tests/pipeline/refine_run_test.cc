@@ -129,12 +129,15 @@ TEST_F(RefineRunTest, SaysHowCertainPointsAndPosesAre) {
 TEST_F(RefineRunTest, DoesNotOverwriteTheRun) {
   WriteRun(folder_);
   const std::string before = folder_.Read("run/observations.csv");
-  for (const char* const output : {"run", "run/../run"}) {
+  std::filesystem::create_directory_symlink("run", folder_.Path("link"));
+  for (const char* const output : {"run", "run/", "run/../run", "link", "run/refined", "link/new/refined"}) {
     const auto summary = Refine(output);
-    ASSERT_FALSE(summary.ok());
+    ASSERT_EQ(summary.status().code(), ErrorCode::kInvalidArgument) << output;
     EXPECT_THAT(summary.status().message(), HasSubstr("give another --output_path"));
   }
   EXPECT_EQ(folder_.Read("run/observations.csv"), before);
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("run/refined")));
+  EXPECT_TRUE(Refine("run_2").ok()) << "a name that only begins like the run's";
 }
 
 TEST_F(RefineRunTest, SaysWhatARunThatWasKilledLacks) {

@@ -28,7 +28,7 @@ struct JoinRequest {
   std::vector<std::string> run_paths;     // two or more, in any order
   std::string sequence_path;              // images of a run without sparse/; empty: those that its run.json names
   std::string camera_path;                // their calibration; empty: the one that belongs to them
-  std::string output_path;                // a folder, made if need be; none of the runs'
+  std::string output_path;                // a folder, made if need be; none of the runs', nor in one
   std::vector<std::string> command_line;  // for run.json
 };
 
@@ -50,13 +50,17 @@ struct JoinSummary {
   RunSummary run;                // of the joined run
 };
 
+// Whether the paths can be those of a join. Fails with kInvalidArgument where fewer than two runs are given, or one of
+// them twice, and where the joined run would overwrite one of them or be in its folder. JoinRuns fails likewise.
+Status CheckPaths(const JoinRequest& request);
+
 // A frame that several runs have is the earlier run's up to the middle of their overlap, then the later one's; where
 // only one of them has a pose, that one's. Of runs that are metric the unit stays. Fails with kNotFound, kUnreadable or
 // kMismatch for a run that cannot be read, is another program's, or is not of the same images, calibration and stride
-// as the first, kInsufficient where no run has a pose, kInvalidArgument for an output folder that is one of the runs'
-// or holds something else, kUnwritable, and kInterrupted where `progress` asks to stop, which is heeded until the
-// joints are known: before, the output folder is not touched. The joined run appears in it whole, and where that fails
-// what was there before is still there.
+// as the first, kInsufficient where no run has a pose, kInvalidArgument as CheckPaths and for an output
+// folder that holds something else, kUnwritable, and kInterrupted where `progress` asks to stop, which is heeded until
+// the joints are known: before, the output folder is not touched. The joined run appears in it whole, and where that
+// fails what was there before is still there.
 Result<JoinSummary> JoinRuns(const JoinRequest& request, const JoinOptions& options, const JobProgress& progress);
 
 }  // namespace pliant

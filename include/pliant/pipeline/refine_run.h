@@ -21,7 +21,7 @@ struct RefineRequest {
   std::string run_path;
   std::string sequence_path;              // images of a run without sparse/; empty: those that its run.json names
   std::string camera_path;                // their calibration; empty: the one that belongs to them
-  std::string output_path;                // a folder, made if need be; not the run's
+  std::string output_path;                // a folder, made if need be; neither the run's nor in it
   std::vector<std::string> command_line;  // for run.json
   const std::atomic<bool>* stop =
       nullptr;  // becomes true when the last solution of all frames is to be written, if there is one; may be null
@@ -59,10 +59,13 @@ struct RefineSummary {
 
 using RefineProgress = std::function<void(const RefinementProgress&)>;
 
+// Fails with kInvalidArgument where the refined run would overwrite the run or be in its folder, as RefineRun does.
+Status CheckPaths(const RefineRequest& request);
+
 // A submap of several that cannot be refined stays as it is. A focal length that is estimated is that of the refined
 // run, whose folder then holds its camera.yaml; where the recording does not determine it the camera's is kept. Fails
 // with kNotFound, kUnreadable or kMismatch for a run that cannot be read, kInsufficient for one without points or of a
-// single frame, kInvalidArgument for an output folder that is the run's or holds something else, kUnwritable. The
+// single frame, kInvalidArgument as CheckPaths and for an output folder that holds something else, kUnwritable. The
 // output folder is not touched before the refinement is done; the refined run then appears in it whole, and where that
 // fails what was there before is still there.
 Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOptions& options,
