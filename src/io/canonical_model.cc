@@ -12,6 +12,7 @@
 #include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/io/run_reader.h"
+#include "pliant/io/run_summary.h"
 #include "pliant/scene/serialize.h"
 
 namespace pliant {
@@ -90,15 +91,23 @@ colmap::Point3D Converted(const CanonicalPoint& point) {
           {}};
 }
 
+// A run that was refined as a rigid scene has each point at one place.
+std::string RemarkOnPositions(const std::string& run_path) {
+  const auto summary = ReadRunSummary(run_path + "/run.json");
+  const bool is_rigid = summary.ok() && summary->description.refinement &&
+                        std::ranges::all_of(summary->description.refinement->models,
+                                            [](RefinedModel model) { return model == RefinedModel::kRigid; });
+  return is_rigid ? "# Positions are those of a rigid scene, and the same in all images"
+                  : "# Positions are undeformed: the scene moved, so this model is not consistent with bundle "
+                    "adjustment";
+}
+
 Status WritePoints(FileGroup& group, const std::string& folder, colmap::Format format,
                    std::span<const CanonicalPoint> points, std::span<const CanonicalImage> images,
                    const std::string& run_path) {
   auto file = colmap::ModelFile::Create(group, folder, "points3D", format);
   if (!file.ok()) return file.status();
-  file->Begin(colmap::PointsHeader(points.size()) +
-                  "\n# Positions are undeformed: the scene moved, so this model is not consistent with bundle "
-                  "adjustment",
-              points.size());
+  file->Begin(colmap::PointsHeader(points.size()) + "\n" + RemarkOnPositions(run_path), points.size());
   std::size_t begin = 0;
   while (begin < points.size()) {
     std::int64_t total = points[begin].num_observations;

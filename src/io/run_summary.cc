@@ -49,6 +49,28 @@ FirstMapFrames ReadFirstMap(const Json& json) {
            .moves_by_depth = json.value("moves_by_depth", false)}};
 }
 
+Json RefinementJson(const RunDescription& description) {
+  if (!description.refinement) return {};
+  Json models = Json::array();
+  for (const RefinedModel model : description.refinement->models) models.push_back(EnumName(model));
+  return {{"models", models},
+          {"depth_sigma", description.refinement->depth_sigma},
+          {"estimated_camera", description.refinement->has_estimated_camera}};
+}
+
+RunRefinement ReadRefinement(const Json& json) {
+  RunRefinement refinement;
+  for (const Json& name : json.at("models")) {
+    RefinedModel of_submap = RefinedModel::kUnchanged;
+    for (const auto& [model, model_name] : EnumNames<RefinedModel>::kNames)
+      if (name.get<std::string>() == model_name) of_submap = model;
+    refinement.models.push_back(of_submap);
+  }
+  refinement.depth_sigma = json.at("depth_sigma").get<double>();
+  refinement.has_estimated_camera = json.at("estimated_camera").get<bool>();
+  return refinement;
+}
+
 RunDescription ReadDescription(const Json& json) {
   RunDescription description = {json.at("version").get<std::string>(),
                                 json.at("command_line").get<std::vector<std::string>>(),
@@ -58,6 +80,8 @@ RunDescription ReadDescription(const Json& json) {
                                 json.value("mask", ""),
                                 json.value("oracles", std::vector<std::string>())};
   description.refined_from = json.value("refined_from", "");
+  if (const Json refinement = json.value("refinement", Json()); !refinement.is_null())
+    description.refinement = ReadRefinement(refinement);
   description.joined_from = json.value("joined_from", std::vector<std::string>());
   if (const Json metric = json.value("metric", Json()); !metric.is_null()) description.metric = metric.get<bool>();
   description.tracks = json.value("tracks", "");
@@ -128,6 +152,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
                  {"end", summary.description.range.end},
                  {"stride", summary.description.range.stride}}},
                {"refined_from", summary.description.refined_from},
+               {"refinement", RefinementJson(summary.description)},
                {"joined_from", summary.description.joined_from},
                {"metric", summary.description.metric ? Json(*summary.description.metric) : Json()},
                {"tracks", summary.description.tracks},

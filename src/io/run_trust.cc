@@ -42,6 +42,21 @@ std::string Capitalized(std::string sentence) {
   return sentence;
 }
 
+// Sentences as one text; empty ones are left out.
+std::string Joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences)
+    if (!sentence.empty()) text += (text.empty() ? "" : " ") + sentence;
+  return text;
+}
+
+// Of a refined run the map that it has is not the first one.
+bool IsRefined(const RunSummary& summary) { return !summary.description.refined_from.empty(); }
+
+bool HasEstimatedCamera(const RunSummary& summary) {
+  return summary.description.refinement && summary.description.refinement->has_estimated_camera;
+}
+
 // Sentences on each map, in order; nothing where there is nothing to say.
 template <class Sentence>
 std::string OfMaps(const RunSummary& summary, Sentence sentence) {
@@ -79,9 +94,42 @@ std::string OfRigidity(const RunSummary& summary) {
          "less well than that.";
 }
 
+std::string OfRefinedDepth(const RunSummary& summary) {
+  const auto& refinement = summary.description.refinement;
+  if (!refinement || !(refinement->depth_sigma > 0.0)) return {};
+  return "All frames were solved for at once: points' distances from the camera are known to " +
+         Percent(refinement->depth_sigma, 1) +
+         " in the median (standard deviation), as far as the scene moves as it was taken to.";
+}
+
+std::string OfModel(RefinedModel model) {
+  switch (model) {
+    case RefinedModel::kRigid:
+      return "the scene was taken for rigid, so that all motion is the camera's.";
+    case RefinedModel::kDeforming:
+      return "the scene was taken for deforming; what moves all of it alike counts as the camera's motion.";
+    case RefinedModel::kUnchanged:
+      break;
+  }
+  return "it could not be refined, and is as it was tracked.";
+}
+
+std::string OfModels(const RunSummary& summary) {
+  if (!summary.description.refinement) return {};
+  const std::vector<RefinedModel>& models = summary.description.refinement->models;
+  std::string text;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (i > 0) text += " ";
+    text +=
+        models.size() > 1 ? "Submap " + std::to_string(i) + ": " + OfModel(models[i]) : Capitalized(OfModel(models[i]));
+  }
+  return text;
+}
+
 // What a start from one image, which is provisional from the first frame on, took for granted.
 std::string OfPrior(const RunSummary& summary) {
   if (summary.description.depth_prior.empty()) return {};
+  if (IsRefined(summary)) return "The run that was refined was tracked with a depth prior.";
   const bool alone = std::ranges::any_of(summary.first_maps, [](const FirstMapFrames& map) {
     return map.evidence.provisional && !(map.evidence.depth_sigma > 0.0);
   });
@@ -102,6 +150,13 @@ std::string OfCamera(const FirstMapEvidence& evidence) {
       " times as large, ";
   if (!evidence.moves_by_depth) return by_errors + "so it moved.";
   return by_errors + "too little to tell in so much noise; that it moved is said by the depths, which stand out.";
+}
+
+std::string OfTrackedCamera(const RunSummary& summary) {
+  return Joined({OfMaps(summary, OfCamera),
+                 WasFoundToDeform(summary)
+                     ? "Later it was found to deform: from then on a part of the motion may be the scene's."
+                     : ""});
 }
 
 std::string OfCalibration(const FirstMapEvidence& evidence) {
@@ -132,14 +187,6 @@ std::string OfTracks(const RunSummary& summary) {
          Digits(summary.description.image_scale, 2) + " times the source's size.";
 }
 
-// Sentences as one text; empty ones are left out.
-std::string Joined(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences)
-    if (!sentence.empty()) text += (text.empty() ? "" : " ") + sentence;
-  return text;
-}
-
 std::string OfCoverage(const RunSummary& summary) {
   const std::string of_map = Percent(summary.median_coverage, 0);
   const std::string followed = Percent(summary.median_followed_coverage, 0);
@@ -160,11 +207,11 @@ std::string Advice(const RunSummary& summary) {
         "If the camera does stand still, start from depth (--Init.method depth --Tracking.camera_motion none), or from "
         "a network's (--depth_prior DIR --Init.method depth_prior --Tracking.camera_motion none); if it moves, move it "
         "further and not evenly.");
-  if (count([](const FirstMapEvidence& e) { return e.depth_sigma > 0.0 && !IsDepthKnown(e); }))
+  if (!IsRefined(summary) && count([](const FirstMapEvidence& e) { return e.depth_sigma > 0.0 && !IsDepthKnown(e); }))
     advice.emplace_back(
         "Depth needs more parallax: move the camera sideways, and further by the distance of the "
         "tissue. Compare a run begun at another frame: pliant evaluate tells how far they agree.");
-  if (count([](const FirstMapEvidence& e) { return e.focal_length_factor != 1.0; }))
+  if (!HasEstimatedCamera(summary) && count([](const FirstMapEvidence& e) { return e.focal_length_factor != 1.0; }))
     advice.emplace_back("Calibrate the camera, or check that the calibration is of this lens, zoom and image size.");
   else if (IsAssumedCamera(summary.description.camera))
     advice.emplace_back(
@@ -191,14 +238,12 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   };
   if (summary.frames_read == 0) return trust;
   add("frames", OfFrames(summary));
-  add("depth", Joined({OfMaps(summary, OfDepth), OfRigidity(summary)}));
+  add("depth", IsRefined(summary) ? OfRefinedDepth(summary) : Joined({OfMaps(summary, OfDepth), OfRigidity(summary)}));
   add("depth_prior", OfPrior(summary));
-  add("camera",
-      Joined({OfMaps(summary, OfCamera), WasFoundToDeform(summary) ? "Later it was found to deform: from then "
-                                                                     "on a part of the motion may be the "
-                                                                     "scene's."
-                                                                   : ""}));
-  add("calibration", Joined({OfAssumedCamera(summary.description), OfMaps(summary, OfCalibration)}));
+  add("camera", IsRefined(summary) ? OfModels(summary) : OfTrackedCamera(summary));
+  add("calibration", HasEstimatedCamera(summary)
+                         ? "The camera's focal length was estimated together with the scene."
+                         : Joined({OfAssumedCamera(summary.description), OfMaps(summary, OfCalibration)}));
   add("images", OfImages(summary.description));
   if (summary.median_reprojection_error_px > 0.0) add("tracks", OfTracks(summary));
   if (summary.median_coverage > 0.0) add("coverage", OfCoverage(summary));

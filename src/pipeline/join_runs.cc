@@ -34,6 +34,7 @@ RunDescription JoinedDescription(const JoinRequest& request, const std::vector<R
   description.program_version = kVersion;
   description.command_line = request.command_line;
   description.refined_from.clear();
+  description.refinement.reset();
   description.joined_from.clear();
   for (const RunPart& part : parts) {
     const RunDescription& of_part = part.description();

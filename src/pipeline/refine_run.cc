@@ -11,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "io/staged_run.h"
@@ -136,6 +137,14 @@ RefinedRecording AsItIs(const RefinedSubmap& submap, const Camera* new_camera) {
   return recording;
 }
 
+// That the refined submap has.
+int CountPoints(const RefinedRecording& refined) {
+  std::set<int> seen;
+  for (std::size_t o = 0; o < refined.is_inlier.size(); ++o)
+    if (refined.is_inlier[o]) seen.insert(refined.recording.observations[o].point_idx);
+  return static_cast<int>(seen.size());
+}
+
 SubmapRefinement SummaryOf(int number, const RefinedSubmap& submap, const RefinedRecording& refined,
                            const std::string& failure) {
   return {number,
@@ -143,10 +152,37 @@ SubmapRefinement SummaryOf(int number, const RefinedSubmap& submap, const Refine
           refined.residual_correlation,
           refined.noise_px,
           static_cast<int>(submap.recording.times.size()),
-          static_cast<int>(submap.ids.size()),
+          CountPoints(refined),
           static_cast<int>(submap.recording.observations.size()),
           static_cast<int>(std::ranges::count(refined.is_inlier, false)),
           failure};
+}
+
+RefinedModel ModelOf(const SubmapRefinement& submap) {
+  if (!submap.failure.empty()) return RefinedModel::kUnchanged;
+  return submap.deforming ? RefinedModel::kDeforming : RefinedModel::kRigid;
+}
+
+bool HasNewCamera(const RefineSummary& summary) {
+  return summary.focal_length && summary.focal_length->failure.empty();
+}
+
+RunRefinement RefinementOf(const RefineSummary& summary, const std::map<int, RefinedRecording>& refined) {
+  RunRefinement refinement;
+  refinement.has_estimated_camera = HasNewCamera(summary);
+  std::vector<double> shares;  // of the distances
+  for (const SubmapRefinement& submap : summary.submaps) {
+    refinement.models.push_back(ModelOf(submap));
+    if (refinement.models.back() == RefinedModel::kUnchanged) continue;
+    const RefinedRecording& of_submap = refined.at(submap.submap);
+    for (std::size_t o = 0; o < of_submap.sigmas.size(); ++o) {
+      const RecordedObservation& seen = of_submap.recording.observations[o];
+      const Rigid3& pose = of_submap.recording.cams_from_world[static_cast<std::size_t>(seen.view_idx)];
+      if (of_submap.sigmas[o] > 0.0) shares.push_back(of_submap.sigmas[o] / (pose * seen.position).norm());
+    }
+  }
+  if (!shares.empty()) refinement.depth_sigma = Median(std::move(shares));
+  return refinement;
 }
 
 // The run's reports with refined poses and points.
@@ -246,8 +282,8 @@ bool IsFocalLengthWanted(const RefineOptions& options, const RunDescription& run
 
 // Of a refinement that was stopped too: it is whole, if not at its minimum.
 Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& options, const Run& run,
-                         const RunMap& known, bool has_new_camera, bool was_stopped, Reporter reporter,
-                         double seconds) {
+                         const RunMap& known, const RefineSummary& summary, const RunRefinement& refinement,
+                         Reporter reporter, double seconds) {
   OptionTable table;
   RefineOptions listed = options;
   listed.List(table);
@@ -257,17 +293,18 @@ Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& opti
   description.program_version = kVersion;
   description.command_line = request.command_line;
   description.refined_from = std::filesystem::absolute(request.run_path).lexically_normal().string();
-  if (has_new_camera) description.camera = request.output_path + "/" + native::kCameraFile;
+  description.refinement = refinement;
+  if (refinement.has_estimated_camera) description.camera = request.output_path + "/" + native::kCameraFile;
   auto staged = StagedRun::Create(request.output_path);
   if (!staged.ok()) return staged.status();
   auto writer = RunWriter::Create(staged->path(), *known.camera, description, table.ToYaml(), {}, writer_options);
   if (!writer.ok()) return writer.status();
   for (const RunFrame& frame : run.frames)
     if (Status status = writer->Write(reporter.Report(frame)); !status.ok()) return status;
-  if (has_new_camera)
+  if (refinement.has_estimated_camera)
     if (Status status = WriteCameraFile(staged->path() + "/" + native::kCameraFile, {*known.camera}); !status.ok())
       return status;
-  const Status finished = was_stopped
+  const Status finished = summary.stopped
                               ? writer->Finish(RunStatus::kInterrupted,
                                                "the refinement was stopped; this is its last solution of all frames")
                               : writer->Finish(run.summary->status, run.summary->note);
@@ -299,11 +336,9 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
 
   const auto goes_on = [&] { return request.stop == nullptr || !*request.stop; };
   RefineSummary summary;
-  bool has_new_camera = false;
   if (IsFocalLengthWanted(options, run->summary->description)) {
     auto focal_length = EstimateFocalLength(options, goes_on, &*known, &*submaps);
     if (!focal_length.ok()) return focal_length.status();
-    has_new_camera = focal_length->failure.empty();
     summary.focal_length = *std::move(focal_length);
   }
   std::map<int, RefinedRecording> refined;
@@ -322,7 +357,7 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
     if (!recording.ok()) {
       failed = Status(recording.status().code(), "submap " + std::to_string(number) + " cannot be refined: " + failure);
       summary.stopped = summary.stopped || failed.code() == ErrorCode::kInterrupted;
-      recording = AsItIs(submap, has_new_camera ? &*known->camera : nullptr);
+      recording = AsItIs(submap, HasNewCamera(summary) ? &*known->camera : nullptr);
     }
     summary.stopped = summary.stopped || recording->stopped;
     summary.submaps.push_back(SummaryOf(number, submap, *recording, failure));
@@ -335,7 +370,7 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
                   "the refinement was stopped before it had found anything better than the run; nothing was written");
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  auto written = Write(request, options, *run, *known, has_new_camera, summary.stopped,
+  auto written = Write(request, options, *run, *known, summary, RefinementOf(summary, refined),
                        Reporter(*run, *known, *submaps, refined), seconds);
   if (!written.ok()) return written.status();
   summary.run = *std::move(written);

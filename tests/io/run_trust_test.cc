@@ -50,6 +50,33 @@ TEST(RunTrust, SaysWhatAGoodRunHas) {
   EXPECT_THAT(trust, Not(Contains(Key("advice"))));
 }
 
+TEST(RunTrust, OfARefinedRunSaysNothingOfTheFirstMap) {
+  FirstMapEvidence evidence = kKnown;
+  evidence.depth_sigma = 0.15;
+  evidence.focal_length_factor = 0.75;
+  RunSummary summary = Summary(evidence);
+  summary.description.refined_from = "/runs/run";
+  summary.description.refinement = RunRefinement{{RefinedModel::kRigid}, 0.008};
+  const auto trust = Trust(summary);
+  for (const auto& [topic, sentences] : trust) EXPECT_THAT(sentences, Not(HasSubstr("irst map"))) << topic;
+  EXPECT_THAT(trust.at("depth"), HasSubstr("points' distances from the camera are known to 0.8 % in the median"));
+  EXPECT_THAT(trust.at("camera"), HasSubstr("The scene was taken for rigid"));
+  EXPECT_THAT(trust.at("tracks"), HasSubstr("0.21 px"));
+  EXPECT_THAT(trust.at("calibration"), HasSubstr("contradict")) << "the calibration is the run's";
+  EXPECT_THAT(trust.at("advice"), Not(HasSubstr("more parallax")));
+
+  summary.description.refinement = RunRefinement{{RefinedModel::kDeforming, RefinedModel::kUnchanged}, 0.008, true};
+  const auto of_two = Trust(summary);
+  EXPECT_THAT(of_two.at("camera"), HasSubstr("Submap 0: the scene was taken for deforming"));
+  EXPECT_THAT(of_two.at("camera"), HasSubstr("Submap 1: it could not be refined"));
+  EXPECT_THAT(of_two.at("calibration"), Not(HasSubstr("contradict")));
+  EXPECT_THAT(of_two, Not(Contains(Key("advice"))));
+
+  summary.description.refinement.reset();  // an earlier version's
+  EXPECT_THAT(Trust(summary), Not(Contains(Key("depth"))));
+  EXPECT_THAT(Trust(summary), Not(Contains(Key("camera"))));
+}
+
 TEST(RunTrust, SaysNoErrorThatIsZero) {
   RunSummary summary = Summary(kKnown);
   summary.median_reprojection_error_px = 0.002;

@@ -66,6 +66,36 @@ TEST_F(RefineRunTest, LeavesARunOfTheSameFramesAndPoints) {
   EXPECT_EQ(map->names.at(12), "12.png");
 }
 
+TEST_F(RefineRunTest, SaysWhatTheSceneWasTakenFor) {
+  WriteRun(folder_);
+  ASSERT_TRUE(Refine().ok());
+  const auto summary = ReadRunSummary(folder_.Path("refined/run.json"));
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  const auto& refinement = summary->description.refinement;
+  ASSERT_TRUE(refinement.has_value());
+  EXPECT_THAT(refinement->models, testing::ElementsAre(RefinedModel::kRigid));
+  EXPECT_GT(refinement->depth_sigma, 0.0);
+  EXPECT_FALSE(refinement->has_estimated_camera);
+  EXPECT_THAT(folder_.Read("refined/run.json"), HasSubstr("\"camera\": \"The scene was taken for rigid"));
+  EXPECT_THAT(folder_.Read("refined/sparse/points3D.txt"), HasSubstr("# Positions are those of a rigid scene"));
+  EXPECT_THAT(folder_.Read("run/sparse/points3D.txt"), HasSubstr("the scene moved"));
+}
+
+TEST_F(RefineRunTest, CountsThePointsThatAreLeft) {
+  WriteRun(folder_);
+  std::string rows = folder_.Read("run/observations.csv");
+  const std::size_t begin = rows.find("\n10,21,") + 1;
+  const std::size_t end = rows.find('\n', begin) + 1;
+  const std::string of_last = rows.substr(begin, end - begin);
+  rows.insert(end, "10,24," + of_last.substr(6));  // a point that is seen once: too seldom
+  folder_.Write("run/observations.csv", rows);
+  const auto summary = Refine();
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->submaps.front().wrong_observations, 1);
+  EXPECT_EQ(summary->submaps.front().points, kRunPoints);
+  EXPECT_EQ(summary->run.points, kRunPoints);
+}
+
 // Of an earlier version's run nothing is made up.
 TEST_F(RefineRunTest, KeepsTheUnitThatTheRunStates) {
   WriteRun(folder_);

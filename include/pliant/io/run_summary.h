@@ -41,6 +41,27 @@ struct FrameSelection {
   bool operator==(const FrameSelection&) const = default;
 };
 
+// What a refinement took a submap for.
+enum class RefinedModel {
+  kRigid,
+  kDeforming,
+  kUnchanged,  // it could not be refined, and is as it was
+};
+
+template <>
+struct EnumNames<RefinedModel> {
+  static constexpr std::array kNames = {std::pair{RefinedModel::kRigid, std::string_view("rigid")},
+                                        std::pair{RefinedModel::kDeforming, std::string_view("deforming")},
+                                        std::pair{RefinedModel::kUnchanged, std::string_view("unchanged")}};
+};
+
+// Of a refined run.
+struct RunRefinement {
+  std::vector<RefinedModel> models;  // of its submaps, in order
+  double depth_sigma = 0;            // median of a point's standard deviation by its distance; 0: unknown
+  bool has_estimated_camera = false;
+};
+
 // What is known when a run begins.
 struct RunDescription {
   std::string program_version;
@@ -67,9 +88,10 @@ struct RunDescription {
   std::string depth_prior = {};  // the folder of the depth prior, absolute; empty: none
   // Parts that the calling program gave: "initializer NAME", "tracks", "cost NAME".
   std::vector<std::string> extensions = {};
-  FrameSelection range = {};                  // all frames in runs of earlier versions, which do not say
-  std::vector<std::string> joined_from = {};  // the runs that were joined, absolute; empty: a run of its own
-  bool interlaced = false;                    // the images are: their odd rows were not used
+  FrameSelection range = {};                     // all frames in runs of earlier versions, which do not say
+  std::vector<std::string> joined_from = {};     // the runs that were joined, absolute; empty: a run of its own
+  bool interlaced = false;                       // the images are: their odd rows were not used
+  std::optional<RunRefinement> refinement = {};  // nothing: not refined, or by an earlier version
 };
 
 // Images of a source that went on while they were tracked.

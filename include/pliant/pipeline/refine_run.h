@@ -34,8 +34,8 @@ struct SubmapRefinement {
   double residual_correlation = 0;
   double noise_px = 0;
   int frames = 0;
-  int points = 0;
-  int observations = 0;
+  int points = 0;              // that are left
+  int observations = 0;        // of the run
   int wrong_observations = 0;  // left out
   std::string failure;         // why it is in the refined run as it is in the run; empty: it was refined
 };
