@@ -10,6 +10,8 @@
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/camera/assumed_camera.h"
+#include "pliant/camera/same_camera.h"
+#include "pliant/io/camera_file.h"
 #include "pliant/io/run_summary.h"
 
 namespace pliant {
@@ -42,6 +44,33 @@ fs::path CameraOfRun(const std::string& run_path, const RunDescription& run) {
   return run.camera;
 }
 
+std::string CameraText(const Camera& camera) {
+  std::string text = std::string(camera.model_name()) + " of " + SizeText(camera.width(), camera.height()) + " (";
+  for (const double param : camera.params()) text += (text.back() == '(' ? "" : " ") + FormatNumber("%.6g", param);
+  return text + ")";
+}
+
+// What the given calibration says of images of the run's size. That of a pair says it after rectification alone.
+Result<Camera> ReadGivenCamera(const std::string& path, const Camera& of_run) {
+  if (IsAssumedCamera(path)) return MakeAssumedCamera(path, of_run.width(), of_run.height());
+  CameraFileOptions options;
+  options.image_size = ImageSize{of_run.width(), of_run.height()};
+  return ReadCamera(path, options);
+}
+
+// A run's points and poses are those of the camera that it was tracked with.
+Status CheckGivenCamera(const SequenceRequest& request, const Camera& of_run) {
+  if (request.camera_path.empty()) return Status::Ok();
+  auto given = ReadGivenCamera(request.camera_path.string(), of_run);
+  if (given.ok() && IsSameCamera(*given, of_run)) return Status::Ok();
+  if (const auto sequence = OpenSequence(request); sequence.ok()) given = (*sequence)->camera();
+  if (!given.ok()) return given.status();
+  if (IsSameCamera(*given, of_run)) return Status::Ok();
+  return {ErrorCode::kMismatch, "the run was tracked with " + CameraText(of_run) + ", and --camera " +
+                                    Quoted(request.camera_path.string()) + " is " + CameraText(*given) +
+                                    "; track the images again to use that one"};
+}
+
 }  // namespace
 
 SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem::path& sequence_path,
@@ -66,7 +95,12 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
 }
 
 Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest& sequence, const Run& run) {
-  if (HasRunMap(run_path, run)) return ReadRunMap(run_path, run);
+  if (HasRunMap(run_path, run)) {
+    auto known = ReadRunMap(run_path, run);
+    if (!known.ok()) return known;
+    if (Status status = CheckGivenCamera(sequence, *known->camera); !status.ok()) return status;
+    return known;
+  }
   if (!sequence.image_path.empty()) {
     auto known = MapFromSequence(sequence, run);
     if (known.ok()) return known;

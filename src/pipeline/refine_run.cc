@@ -294,6 +294,7 @@ Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& opti
   description.command_line = request.command_line;
   description.refined_from = std::filesystem::absolute(request.run_path).lexically_normal().string();
   description.refinement = refinement;
+  if (!request.camera_path.empty() && !HasRunMap(request.run_path, run)) description.camera = request.camera_path;
   if (refinement.has_estimated_camera) description.camera = request.output_path + "/" + native::kCameraFile;
   auto staged = StagedRun::Create(request.output_path);
   if (!staged.ok()) return staged.status();

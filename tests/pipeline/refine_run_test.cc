@@ -13,6 +13,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
@@ -94,6 +95,50 @@ TEST_F(RefineRunTest, CountsThePointsThatAreLeft) {
   EXPECT_EQ(summary->submaps.front().wrong_observations, 1);
   EXPECT_EQ(summary->submaps.front().points, kRunPoints);
   EXPECT_EQ(summary->run.points, kRunPoints);
+}
+
+TEST_F(RefineRunTest, RefusesACalibrationThatIsNotTheRuns) {
+  WriteRun(folder_);
+  const auto refine = [&](const std::string& camera) {
+    RefineRequest request;
+    request.run_path = folder_.Path("run");
+    request.camera_path = camera;
+    request.output_path = folder_.Path("refined");
+    return RefineRun(request, {}, {}).status();
+  };
+  const std::string head = "model: PINHOLE\nwidth: 640\nheight: ";
+  const std::string same = folder_.Write("same.yaml", head + "480\nparams: [500, 500, 319.5, 239.5]\n");
+  const std::string longer = folder_.Write("longer.yaml", head + "480\nparams: [600, 600, 319.5, 239.5]\n");
+  const std::string lower = folder_.Write("lower.yaml", head + "400\nparams: [500, 500, 319.5, 199.5]\n");
+  for (const std::string& other : {longer, lower, std::string("fov:70")}) {
+    const Status status = refine(other);
+    EXPECT_EQ(status.code(), ErrorCode::kMismatch) << other;
+    EXPECT_THAT(status.message(), HasSubstr("the run was tracked with PINHOLE of 640x480 (500 500 319.5 239.5), and "));
+    EXPECT_THAT(status.message(), HasSubstr("'" + other + "' is "));
+  }
+  EXPECT_THAT(refine(longer).message(), HasSubstr("PINHOLE of 640x480 (600 600 319.5 239.5)"));
+  EXPECT_EQ(refine(folder_.Path("none.yaml")).code(), ErrorCode::kNotFound);
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("refined")));
+  EXPECT_TRUE(refine(same).ok());
+  EXPECT_EQ(ReadRunSummary(folder_.Path("refined/run.json"))->description.camera, "") << "as the run says";
+}
+
+TEST_F(RefineRunTest, NamesTheCalibrationThatARunWithoutOneWasRefinedWith) {
+  WriteRun(folder_);
+  std::filesystem::remove_all(folder_.Path("run/sparse"));
+  std::filesystem::create_directories(folder_.Path("images"));
+  const cv::Mat image(480, 640, CV_8UC1, cv::Scalar(99));
+  for (int k = 0; k < 10 + 2 * kRunFrames; ++k)  // up to the run's last
+    ASSERT_TRUE(cv::imwrite(folder_.Path("images/" + std::to_string(k) + ".png"), image));
+  RefineRequest request;
+  request.run_path = folder_.Path("run");
+  request.sequence_path = folder_.Path("images");
+  request.camera_path =
+      folder_.Write("lens.yaml", "model: PINHOLE\nwidth: 640\nheight: 480\nparams: [500, 500, 319.5, 239.5]\n");
+  request.output_path = folder_.Path("refined");
+  const auto summary = RefineRun(request, {}, {});
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(ReadRunSummary(folder_.Path("refined/run.json"))->description.camera, request.camera_path);
 }
 
 // Of an earlier version's run nothing is made up.

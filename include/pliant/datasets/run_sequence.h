@@ -25,8 +25,9 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
                               const std::filesystem::path& camera_path = {});
 
 // The camera, the names of the images and the points of `run`, which was read from `run_path`: by its sparse/, or,
-// where there is none (a killed run), camera and names by its sequence. Fails as ReadRunMap and OpenSequence do, and
-// with kNotFound where neither is there.
+// where there is none (a killed run), camera and names by its sequence. Fails as ReadRunMap and OpenSequence do, with
+// kNotFound where neither is there, and with kMismatch where the calibration that was given (SequenceOfRun) is another
+// one than that of sparse/.
 Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest& sequence, const Run& run);
 
 // Fails with kNotFound where the run was tracked with masks and `request` names none: without them instruments would be
