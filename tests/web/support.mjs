@@ -6,6 +6,7 @@
 //   PLIANT_CHROMIUM       the browser; else `chromium` of the path
 //   PLIANT_REPORT, PLIANT_REPORT_TWO, PLIANT_REPORT_NO_IMAGES   the reports: one run with truth and images, two runs, no images
 //   PLIANT_REPORT_SURFACE, PLIANT_SURFACE   a report with a surface, and the surface's folder
+//   PLIANT_REPORT_SECOND_SURFACE   a report of two runs with a surface of the second
 //   PLIANT_SCREENSHOTS    a folder for pictures of the page, if any are wanted
 
 import assert from "node:assert/strict";

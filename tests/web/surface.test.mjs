@@ -8,7 +8,7 @@ import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 import { test } from "node:test";
-import { countPixels, goTo, press, screenshot, testReport } from "./support.mjs";
+import { countPixels, goTo, press, screenshot, state, testReport } from "./support.mjs";
 
 const WHITE = "#ffffff";
 
@@ -20,6 +20,18 @@ testReport("shows the tissue with its texture", "PLIANT_REPORT_SURFACE", async (
   await press(page, "s");
   await page.waitForTimeout(500);
   assert.ok(await countPixels(page, "#scene", WHITE) > white + 20000);
+});
+
+testReport("begins with the run that has a surface", "PLIANT_REPORT_SECOND_SURFACE", async (page) => {
+  const { currentRun, visibleRuns } = await state(page);
+  assert.equal(visibleRuns.length, 2);
+  assert.equal(currentRun, visibleRuns[1]);
+  await goTo(page, 20);
+  await page.waitForTimeout(500);
+  const shown = await countPixels(page, "#scene", WHITE);
+  await press(page, "s");
+  await page.waitForTimeout(500);
+  assert.ok(await countPixels(page, "#scene", WHITE) > shown);
 });
 
 test("Khronos' validator finds nothing in surface.glb", async () => {

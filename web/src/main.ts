@@ -91,7 +91,9 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
   document.title = `${report.title} – Pliant`;
   setText(byId("title"), report.title);
   setText(byId("version"), `Pliant ${report.version}`);
-  const store = new Store(firstState(report.runs.length));
+  // Of several runs the one with a surface, which is shown of the current run alone.
+  const withSurface = report.runs.findIndex((run) => run.surfaces.length > 0);
+  const store = new Store(firstState(report.runs.length, Math.max(0, withSurface)));
   const { state } = store;
   const coloring = () => {
     const modes = colorModes(report);

@@ -71,13 +71,14 @@ export function anyOf(changed: Changed, ...keys: (keyof State)[]): boolean {
   return keys.some((key) => changed.has(key));
 }
 
-export function firstState(runs: number): State {
+// `current`: the run that is shown in full at first.
+export function firstState(runs: number, current: number): State {
   return {
     position: 0,
     playing: false,
     speed: 1,
     loop: false,
-    current: 0,
+    current,
     visible: new Array(runs).fill(true),
     picked: null,
     measured: null,
