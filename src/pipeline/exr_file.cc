@@ -19,7 +19,9 @@
 namespace pliant {
 namespace {
 
-constexpr const char* kDepthChannel = "Z";
+// OpenEXR's name of a depth is Z, but OpenCV and ffmpeg read a single channel by the name of luminance alone, and
+// OpenCV gives zeros for others without an error.
+constexpr const char* kDepthChannel = "Y";
 
 // A file in memory.
 class MemoryStream final : public Imf::OStream {

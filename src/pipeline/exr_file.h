@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-// CV_32FC1, as the channel "Z" of 32-bit floats that OpenEXR knows for depths, compressed without loss. Fails with
+// CV_32FC1, as one channel "Y" of 32-bit floats, which OpenCV and ffmpeg read, compressed without loss. Fails with
 // kUnwritable.
 Status WriteDepthExr(const std::filesystem::path& path, const cv::Mat& depth);
 
