@@ -8,9 +8,13 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -33,6 +37,7 @@ namespace pliant {
 namespace {
 
 constexpr const char* kNotTracked = "it was not tracked";
+constexpr const char* kNotInRun = "the run has no such frame";
 
 // Which frames are to be done, and when: a frame is done when the last of its images has been read.
 struct Plan {
@@ -196,8 +201,63 @@ class SurfaceMaker {
 // Why the frames have no depth: what is said of the first one that was tracked.
 std::string ReasonOf(const std::vector<SurfaceFrame>& frames) {
   for (const SurfaceFrame& frame : frames)
-    if (!frame.note.empty() && frame.note != kNotTracked) return frame.note;
+    if (!frame.note.empty() && frame.note != kNotTracked && frame.note != kNotInRun) return frame.note;
   return "the images do not agree anywhere";
+}
+
+// The chosen frames that have no pose, with a note of why. Another program's run does not say which frames it read.
+std::vector<SurfaceFrame> FramesWithoutPose(const SurfaceRequest& request, const Run& run,
+                                            const std::vector<PosedFrame>& posed) {
+  std::set<int> tracked;
+  std::set<int> read;
+  for (const PosedFrame& frame : posed) tracked.insert(frame.frame_idx);
+  for (const RunFrame& frame : run.frames) read.insert(frame.frame_idx);
+  std::vector<SurfaceFrame> missing;
+  for (const int frame_idx : std::set<int>(request.frames.begin(), request.frames.end())) {
+    if (tracked.contains(frame_idx)) continue;
+    const bool was_read = read.empty() || read.contains(frame_idx);
+    missing.push_back({.frame_idx = frame_idx, .note = was_read ? kNotTracked : kNotInRun});
+  }
+  return missing;
+}
+
+std::string FramesOf(const Run& run) {
+  const auto [first, last] = std::ranges::minmax(run.frames, {}, &RunFrame::frame_idx);
+  return std::to_string(first.frame_idx) + " to " + std::to_string(last.frame_idx);
+}
+
+// "frame 70", "frames 70, 71, 72 and 12 more".
+std::string FrameNumbers(const std::vector<SurfaceFrame>& frames) {
+  constexpr std::size_t kMostNamed = 10;
+  const std::span named(frames.data(), std::min(frames.size(), kMostNamed));
+  std::string text = frames.size() == 1 ? "frame " : "frames ";
+  text += CommaSeparated(named, [](const SurfaceFrame& frame) { return std::to_string(frame.frame_idx); });
+  if (frames.size() > kMostNamed) text += " and " + std::to_string(frames.size() - kMostNamed) + " more";
+  return text;
+}
+
+// One for each reason.
+std::vector<std::string> WarningsOf(const std::vector<SurfaceFrame>& missing, const Run& run) {
+  std::vector<std::string> warnings;
+  for (const std::string_view note : {kNotInRun, kNotTracked}) {
+    std::vector<SurfaceFrame> frames;
+    std::ranges::copy_if(missing, std::back_inserter(frames), [&](const auto& frame) { return frame.note == note; });
+    if (frames.empty()) continue;
+    const std::string left_out = " and " + std::string(frames.size() == 1 ? "is" : "are") + " left out";
+    warnings.push_back(note == kNotInRun ? FrameNumbers(frames) + (frames.size() == 1 ? " is" : " are") +
+                                               " not in the run, whose frames are " + FramesOf(run) + "," + left_out
+                                         : FrameNumbers(frames) + (frames.size() == 1 ? " was" : " were") +
+                                               " not tracked" + left_out);
+  }
+  return warnings;
+}
+
+Status NoFrameChosen(const SurfaceRequest& request, const Run& run, const std::vector<SurfaceFrame>& missing) {
+  if (!missing.empty() &&
+      std::ranges::all_of(missing, [](const SurfaceFrame& frame) { return frame.note == kNotInRun; }))
+    return {ErrorCode::kInvalidArgument, "the run " + Quoted(request.run_path) + " has none of the chosen frames (" +
+                                             FrameNumbers(missing) + "); its frames are " + FramesOf(run)};
+  return {ErrorCode::kInsufficient, "none of the chosen frames was tracked in " + Quoted(request.run_path)};
 }
 
 }  // namespace
@@ -241,21 +301,15 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   const auto frames = ReadPosedFrames(request.run_path, *run);
   if (!frames.ok()) return frames.status();
   const Plan plan = MakePlan(*frames, request, options);
-  if (plan.references.empty())
-    return Status(ErrorCode::kInsufficient, "none of the chosen frames was tracked in " + Quoted(request.run_path));
+  const std::vector<SurfaceFrame> missing = FramesWithoutPose(request, *run, *frames);
+  if (plan.references.empty()) return NoFrameChosen(request, *run, missing);
   const TrackedImage tracked = TrackedImageOf(*run);
   const auto estimator = DenseDepthEstimator::Create(*known->camera, tracked, options.depth, ThreadsOf(options));
   if (!estimator.ok()) return estimator.status();
   auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames), options);
   if (!writer.ok()) return writer.status();
   RunViews images(*std::move(sequence), *frames, *known, options.masks, options.pairs ? ThreadsOf(options) : 0);
-  SurfaceSummary summary{estimator->windows(), {}};
-  for (const int frame_idx : std::set<int>(request.frames.begin(), request.frames.end()))
-    if (std::ranges::count(*frames, frame_idx, &PosedFrame::frame_idx) == 0) {
-      SurfaceFrame& missing = summary.frames.emplace_back();
-      missing.frame_idx = frame_idx;
-      missing.note = kNotTracked;
-    }
+  SurfaceSummary summary{.windows = estimator->windows(), .frames = missing, .warnings = WarningsOf(missing, *run)};
   const Status made =
       SurfaceMaker(request, options, callback, *estimator, ComparedWindowPx(tracked, options.depth), &*writer)
           .Make(*frames, plan, *known, &images, &summary);

@@ -173,14 +173,15 @@ void Surface(const py::dict& request, const std::vector<int>& frames, const py::
                                        .frames = frames,
                                        .command_line = {"pliant.surface"},
                                        .stop = &interrupt.stop()};
-  RaiseUnlessOk(WithoutGil(&interrupt, [&] {
-                  return MakeSurface(surface_request, surface_options,
-                                     [&](SurfaceStage stage, int done, int total, double /*known_share*/) {
-                                       if (on_progress.is_none()) return;
-                                       const char* name = stage == SurfaceStage::kDepth ? "depth" : "mesh";
-                                       interrupt.Call([&] { on_progress(name, done, total); });
-                                     });
-                }).status());
+  const auto summary = ValueOf(WithoutGil(&interrupt, [&] {
+    return MakeSurface(surface_request, surface_options,
+                       [&](SurfaceStage stage, int done, int total, double /*known_share*/) {
+                         if (on_progress.is_none()) return;
+                         const char* name = stage == SurfaceStage::kDepth ? "depth" : "mesh";
+                         interrupt.Call([&] { on_progress(name, done, total); });
+                       });
+  }));
+  Warn(summary.warnings);
 }
 
 // evaluation.json.

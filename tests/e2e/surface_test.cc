@@ -5,6 +5,8 @@
 #include <atomic>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,12 +65,13 @@ TEST(RigidScene, ItsSurfaceIsNearerToTheTruthThanItsPointsInterpolated) {
 
 class SurfaceFiles : public testing::Test {
  protected:
-  Result<SurfaceSummary> Make(const SurfaceRunOptions& options, const SurfaceProgress& callback = {}) const {
+  Result<SurfaceSummary> Make(const SurfaceRunOptions& options, const SurfaceProgress& callback = {},
+                              std::vector<int> frames = {30}) const {
     SurfaceRequest request;
     request.run_path = kDefaultRun;
     request.sequence_path = kSequence;
     request.output_path = folder_.Path("surface");
-    request.frames = {30};
+    request.frames = std::move(frames);
     request.stop = &stop_;
     return MakeSurface(request, options, callback);
   }
@@ -99,6 +102,17 @@ TEST_F(SurfaceFiles, AreThoseThatAreWanted) {
   EXPECT_TRUE(Has("depth/000030.png"));
   for (const char* name : {"mesh", "obj", "texture.jpg", "texture.mtl", "surface.glb", "undeformed.ply"})
     EXPECT_FALSE(Has(name)) << name;
+}
+
+TEST_F(SurfaceFiles, AreThoseOfFramesThatTheRunHas) {
+  SurfaceRunOptions options;
+  options.mesh_columns = 0;
+  const auto summary = Make(options, {}, {30, 9998, 9999});
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_THAT(
+      summary->warnings,
+      testing::ElementsAre(testing::StartsWith("frames 9998, 9999 are not in the run, whose frames are 0 to ")));
+  EXPECT_THAT(Make(options)->warnings, testing::IsEmpty());
 }
 
 // What is filled is nearly as good as what is measured around it, and changes nothing of the mesh.

@@ -32,6 +32,21 @@ class SurfaceRunTest : public testing::Test {
     return MakeSurface(request, {}, {});
   }
 
+  // Frame 20 was read, and has no pose.
+  void WriteRunWithALostFrame() const {
+    auto writer =
+        RunWriter::Create(folder_.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {});
+    ASSERT_TRUE(writer.ok()) << writer.status().message();
+    for (int frame = 0; frame < kRunFrames; ++frame) ASSERT_TRUE(writer->Write(Report(frame)).ok());
+    FrameReport lost;
+    lost.frame_idx = 10 + 2 * kRunFrames;
+    lost.name = FileName(lost.frame_idx);
+    lost.timestamp_s = kRunFrames / 25.0;
+    lost.state = TrackingState::kLost;
+    ASSERT_TRUE(writer->Write(lost).ok());
+    ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+  }
+
   static std::string FileName(int frame) { return std::to_string(frame) + ".png"; }
 
   // Gray images of the run's frames and of those between, `count` of them.
@@ -51,9 +66,26 @@ TEST_F(SurfaceRunTest, SaysWhatIsMissing) {
   EXPECT_EQ(Make("").status().code(), ErrorCode::kNotFound);
   WriteRun(folder_);
   EXPECT_THAT(Make(folder_.Path("nowhere")).status().message(), HasSubstr("nowhere"));
-  const auto other = Make(WriteImages(19), {3});
-  EXPECT_EQ(other.status().code(), ErrorCode::kInsufficient);
-  EXPECT_THAT(other.status().message(), HasSubstr("none of the chosen frames was tracked"));
+}
+
+TEST_F(SurfaceRunTest, SaysThatNoChosenFrameIsThereOrWasTracked) {
+  WriteRunWithALostFrame();
+  const std::string images = WriteImages(21);
+  const auto absent = Make(images, {3, 70});
+  EXPECT_EQ(absent.status().code(), ErrorCode::kInvalidArgument);
+  EXPECT_THAT(absent.status().message(),
+              HasSubstr("has none of the chosen frames (frames 3, 70); its frames are 10 to 20"));
+  const auto lost = Make(images, {20, 70});
+  EXPECT_EQ(lost.status().code(), ErrorCode::kInsufficient);
+  EXPECT_THAT(lost.status().message(), HasSubstr("none of the chosen frames was tracked"));
+}
+
+TEST_F(SurfaceRunTest, NotesWhyAChosenFrameIsLeftOut) {
+  WriteRunWithALostFrame();
+  EXPECT_FALSE(Make(WriteImages(21), {10, 20, 70}).ok());  // gray images have no depth
+  const std::string summary = folder_.Read("surface/surface.json");
+  EXPECT_THAT(summary, HasSubstr("it was not tracked"));
+  EXPECT_THAT(summary, HasSubstr("the run has no such frame"));
 }
 
 TEST_F(SurfaceRunTest, ImagesThatEndTooEarlyAreOthers) {

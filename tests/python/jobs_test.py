@@ -57,8 +57,10 @@ class Jobs(TestCase):
         self.assertEqual([frame["frame"] for frame in summary["frames"]], [20, 40])
         self.assertEqual(len(list((self.folder / "surface" / "depth").iterdir())), 2)
         self.assertIn(("depth", 2, 2), told)
-        with self.assertRaises(pliant.Error):
+        with self.assertRaisesRegex(ValueError, "has none of the chosen frames"):
             pliant.surface(RUN, self.folder / "other", frames=[9999])
+        with self.assertWarnsRegex(UserWarning, "frame 9999 is not in the run"):
+            pliant.surface(RUN, self.folder / "third", {"Surface.mesh_columns": 0}, frames=[20, 9999])
         with self.assertRaisesRegex(ValueError, "frames has no frame"):
             pliant.surface(RUN, self.folder / "other", frames=[])
 

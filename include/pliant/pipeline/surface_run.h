@@ -53,20 +53,21 @@ struct SurfaceRequest {
 
 struct SurfaceFrame {
   int frame_idx = 0;
-  std::string name;
-  std::vector<int> neighbors;  // frames
-  bool has_pair = false;       // it was compared with its right image, not with neighbors
-  double known_share = 0;      // of the image's valid pixels, that have a depth
-  double filled_share = 0;     // filled pixels by the number of valid ones; not among `known_share`
-  double median_sigma = 0;     // of those that are known, by the depth
+  std::string name = {};
+  std::vector<int> neighbors = {};  // frames
+  bool has_pair = false;            // it was compared with its right image, not with neighbors
+  double known_share = 0;           // of the image's valid pixels, that have a depth
+  double filled_share = 0;          // filled pixels by the number of valid ones; not among `known_share`
+  double median_sigma = 0;          // of those that are known, by the depth
   double seconds = 0;
-  std::string note;  // why it has no depth, one sentence; else empty
+  std::string note = {};  // why it has no depth, one sentence; else empty
 };
 
 struct SurfaceSummary {
   ComparedWindows windows;
   std::vector<SurfaceFrame> frames;
   bool stopped = false;
+  std::vector<std::string> warnings = {};  // of chosen frames that are not in the run, or were not tracked; sentences
 };
 
 enum class SurfaceStage {
@@ -80,8 +81,9 @@ enum class SurfaceStage {
 using SurfaceProgress = std::function<void(SurfaceStage stage, int done, int total, double known_share)>;
 
 // Frames are written as they are done, each whole or not at all; a failure leaves those before it. Fails with
-// kNotFound, kUnreadable or kMismatch for a run or images that cannot be read or do not belong together, kInsufficient
-// where no chosen frame was tracked or has a depth, kUnwritable.
+// kNotFound, kUnreadable or kMismatch for a run or images that cannot be read or do not belong together,
+// kInvalidArgument where the run has none of the chosen frames, kInsufficient where none was tracked or has a depth,
+// kUnwritable.
 Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceRunOptions& options,
                                    const SurfaceProgress& callback);
 
