@@ -126,9 +126,10 @@ class EndoNerfWriter {
     return WriteImage(native::kDepthFolder, frame, QuantizeDepth(image.depth, unit_));
   }
 
-  Status Finish() const {
+  // `of_map_unit`: what a map unit is.
+  Status Finish(LengthUnit of_map_unit) const {
     if (Status status = WriteFileAtomically(folder_.Path(kPosesFile), NpyOf(rows_)); !status.ok()) return status;
-    return WriteCameraFile(folder_.Path(kCameraFile), {.camera = pinhole_, .depth_scale = unit_});
+    return WriteCameraFile(folder_.Path(kCameraFile), {.camera = pinhole_, .depth_scale = unit_}, of_map_unit);
   }
 
  private:
@@ -164,7 +165,8 @@ Status ExportEndoNerf(const RunSource& source, const ExportOptions& options, con
     const auto image = images->Read(frame);
     return image.ok() ? writer.Write(frame, *image, observations) : image.status();
   });
-  return status.ok() ? writer.Finish() : status;
+  if (!status.ok()) return status;
+  return writer.Finish(IsMetric(source) ? LengthUnit::kMillimeters : LengthUnit::kMapUnits);
 }
 
 }  // namespace pliant

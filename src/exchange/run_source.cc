@@ -106,6 +106,11 @@ Result<std::vector<RunSource>> ReadRunSources(const ExportRequest& request, int 
   return in_order;
 }
 
+bool IsMetric(const RunSource& source) {
+  const auto& summary = source.run->summary;
+  return summary && summary->description.metric.value_or(false);
+}
+
 Status ForEachFrame(const RunSource& source, const FrameFunction& function) {
   std::vector<int> frames_idx;
   for (const SourceFrame& frame : source.frames) frames_idx.push_back(frame.frame_idx);

@@ -46,6 +46,9 @@ struct RunSource {
 // one source a submap, in their order. Fails as ExportRun does.
 Result<std::vector<RunSource>> ReadRunSources(const ExportRequest& request, int stride);
 
+// Whether the run says that a map unit is a millimeter.
+bool IsMetric(const RunSource& source);
+
 // Calls `function(frame, observations)` for every frame of the source, in order, also for those that see nothing.
 using FrameFunction = std::function<Status(const SourceFrame&, const std::vector<PointObservation>&)>;
 Status ForEachFrame(const RunSource& source, const FrameFunction& function);

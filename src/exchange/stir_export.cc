@@ -95,12 +95,6 @@ Result<std::vector<Eigen::Vector3d>> Lifted(const RunSource& source, const Way& 
   return points;
 }
 
-// Whether map units are millimeters, which the file in three dimensions is in.
-bool IsMetric(const RunSource& source) {
-  const auto& summary = source.run->summary;
-  return summary && summary->description.metric.value_or(false);
-}
-
 Status Write(const std::string& recording, std::vector<Eigen::Vector3d> points, int dimensions,
              const std::string& path) {
   return WriteStirPoints({.dimensions = dimensions, .of_recording = {{recording, std::move(points)}}}, path);
@@ -170,7 +164,7 @@ Status WriteOwn(const RunSource& source, const ExportOptions& options, const Exp
   }
   if (pixels[0].empty())
     return {ErrorCode::kInsufficient, "no point of the run is seen in its first and its last frame"};
-  const bool metric = IsMetric(source);
+  const bool metric = IsMetric(source);  // the file in three dimensions is in millimeters
   for (const auto& [k, name, name3d] :
        {std::tuple(0U, "start.json", "start3d.json"), std::tuple(1U, "positions.json", "positions3d.json")}) {
     if (Status status = Write(recording, Pixels(pixels[k]), 2, folder.Path(name)); !status.ok()) return status;

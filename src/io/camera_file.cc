@@ -286,20 +286,22 @@ Result<Camera> ReadCamera(const std::string& path, const CameraFileOptions& opti
   return std::move(file->camera);
 }
 
-Status WriteCameraFile(const std::string& path, const CameraFile& file) {
+Status WriteCameraFile(const std::string& path, const CameraFile& file, LengthUnit unit) {
+  const std::string name = unit == LengthUnit::kMillimeters ? "mm" : "map units";
   std::string text = "model: " + std::string(file.camera.model_name()) +
                      "\nwidth: " + std::to_string(file.camera.width()) +
                      "\nheight: " + std::to_string(file.camera.height()) + "\nparams: [" +
                      CommaSeparated(file.camera.params(), FormatDouble) + "]\n";
   if (file.fps) text += "fps: " + FormatDouble(*file.fps) + "\n";
-  if (file.depth_scale) text += "depth_scale: " + FormatDouble(*file.depth_scale) + "  # mm per unit\n";
-  if (file.baseline_mm) text += "baseline: " + FormatDouble(*file.baseline_mm) + "  # mm\n";
+  if (file.depth_scale) text += "depth_scale: " + FormatDouble(*file.depth_scale) + "  # " + name + " per step\n";
+  if (file.baseline_mm) text += "baseline: " + FormatDouble(*file.baseline_mm) + "  # " + name + "\n";
   if (const auto& light = file.photometric) {
     text += "gamma: " + FormatDouble(light->gamma) + "\nvignetting: " + FormatDouble(light->vignetting) +
             "\nlight_spread: " + FormatDouble(light->light_spread) + "\nlight_axis: [" +
             CommaSeparated(light->light_axis, FormatDouble) + "]\n";
   }
-  return WriteFileAtomically(path, text + "unit: mm\n");
+  if (unit == LengthUnit::kMillimeters) text += "unit: mm\n";
+  return WriteFileAtomically(path, text);
 }
 
 namespace {

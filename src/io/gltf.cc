@@ -30,8 +30,10 @@ constexpr float kMetersPerUnit = 0.001F;
 constexpr float kNear = 0.02F;
 constexpr float kFar = 200.0F;
 constexpr const char* kGenerator = "Pliant ";
-constexpr const char* kSigma = "_SIGMA";   // an attribute of our own: map units
-constexpr const char* kFrames = "frames";  // extras: of the keys
+constexpr const char* kSigma = "_SIGMA";          // an attribute of our own: standard deviation of the distance
+constexpr const char* kFrames = "frames";         // extras: of the keys
+constexpr const char* kSigmaUnit = "sigma_unit";  // extras; earlier versions, which had map units, lack it
+constexpr const char* kMeters = "m";
 constexpr const char* kSubmap = "submap";
 
 // From x right, y down, z forward to glTF's x right, y up, z backward.
@@ -204,7 +206,8 @@ void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
   else
     primitive.attributes["TEXCOORD_0"] = builder->AddFloats(TextureUvs(corners), TINYGLTF_TYPE_VEC2, false, target);
   std::vector<float> sigmas;
-  for (const Corner& corner : corners.corners) sigmas.push_back(mesh.sigmas[static_cast<std::size_t>(corner.vertex)]);
+  for (const Corner& corner : corners.corners)
+    sigmas.push_back(kMetersPerUnit * mesh.sigmas[static_cast<std::size_t>(corner.vertex)]);
   primitive.attributes[kSigma] = builder->AddFloats(sigmas, TINYGLTF_TYPE_SCALAR, false, target);
   for (const MeshKey& key : animation.keys) {
     const auto moved = [&](std::size_t v) {
@@ -221,6 +224,7 @@ void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
   tinygltf::Value::Object extras;
   extras.emplace(kFrames, tinygltf::Value(std::move(frames)));
   extras.emplace(kSubmap, tinygltf::Value(animation.submap));
+  extras.emplace(kSigmaUnit, tinygltf::Value(std::string(kMeters)));
   entry.extras = tinygltf::Value(std::move(extras));
   entry.weights.assign(animation.keys.size(), 0.0);
   if (!entry.weights.empty()) entry.weights[0] = 1.0;
@@ -385,6 +389,8 @@ std::optional<GltfMesh> MeshIn(const tinygltf::Model& model) {
   }
   if (!entry.extras.IsObject() || !entry.extras.Has(kSubmap) || !entry.extras.Has(kFrames)) return std::nullopt;
   result.submap = entry.extras.Get(kSubmap).GetNumberAsInt();
+  if (entry.extras.Has(kSigmaUnit))
+    for (float& sigma : mesh.sigmas) sigma /= kMetersPerUnit;
   const tinygltf::Value& frames = entry.extras.Get(kFrames);
   if (!frames.IsArray() || frames.ArrayLen() != primitive.targets.size()) return std::nullopt;
   std::vector<float> times;

@@ -306,7 +306,9 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   const TrackedImage tracked = TrackedImageOf(*run);
   const auto estimator = DenseDepthEstimator::Create(*known->camera, tracked, options.depth, ThreadsOf(options));
   if (!estimator.ok()) return estimator.status();
-  auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames), options);
+  auto writer = SurfaceWriter::Create(
+      request.output_path,
+      {*known->camera, LargestDepth(*frames), run->summary ? run->summary->description.metric : std::nullopt}, options);
   if (!writer.ok()) return writer.status();
   RunViews images(*std::move(sequence), *frames, *known, options.masks, options.pairs ? ThreadsOf(options) : 0);
   SurfaceSummary summary{.windows = estimator->windows(), .frames = missing, .warnings = WarningsOf(missing, *run)};

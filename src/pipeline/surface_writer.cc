@@ -76,7 +76,7 @@ std::string FileNameOf(const SurfaceFrame& frame) {
 
 }  // namespace
 
-Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camera& camera, double largest_depth,
+Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const SurfaceSource& source,
                                             const SurfaceRunOptions& options) {
   const fs::path folder = path;
   if (Status status = RemoveEarlierSurface(folder); !status.ok()) return status;
@@ -90,16 +90,17 @@ Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camer
     fs::create_directories(folder / kind, error);
     if (error) return Unwritable(folder / kind);
   }
-  const double scale = largest_depth / native::kMaxDepthSteps;
-  if (Status status =
-          WriteCameraFile((folder / native::kCameraFile).string(), {.camera = camera, .depth_scale = scale});
+  const double scale = source.largest_depth / native::kMaxDepthSteps;
+  const LengthUnit unit = source.metric.value_or(false) ? LengthUnit::kMillimeters : LengthUnit::kMapUnits;
+  if (Status status = WriteCameraFile((folder / native::kCameraFile).string(),
+                                      {.camera = source.camera, .depth_scale = scale}, unit);
       !status.ok())
     return status;
   // What a surface that is killed leaves says that it is one.
   if (Status status = WriteFileAtomically((folder / surface::kSummaryFile).string(), "{\"status\": \"interrupted\"}\n");
       !status.ok())
     return status;
-  return SurfaceWriter(folder, scale, options);
+  return SurfaceWriter(folder, source, scale, options);
 }
 
 Status SurfaceWriter::Write(const SurfaceFrame& frame, const SurfaceMaps& maps) {
@@ -135,6 +136,7 @@ Status SurfaceWriter::Finish(const SurfaceRequest& request, const SurfaceRunOpti
                {"command_line", request.command_line},
                {"status", summary.stopped ? "interrupted" : "completed"},
                {"run", fs::absolute(request.run_path).lexically_normal().string()},
+               {"metric", source_.metric ? Json(*source_.metric) : Json()},
                {"depth_scale", depth_scale_},
                {"windows",
                 {{"image_width", summary.windows.width_px},

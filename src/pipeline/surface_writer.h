@@ -5,7 +5,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
@@ -21,11 +23,18 @@ struct SurfaceMaps {
   cv::Mat normals;  // CV_32FC3, camera frame, zero: none; empty: not wanted
 };
 
+// The run that a surface is made of.
+struct SurfaceSource {
+  Camera camera;
+  double largest_depth = 0;         // that can be written, map units
+  std::optional<bool> metric = {};  // RunDescription::metric
+};
+
 class SurfaceWriter {
  public:
-  // Makes the folder, removes frames of an earlier surface there and writes camera.yaml. Depths up to `largest_depth`,
-  // map units, can be written. Fails with kUnwritable, and kInvalidArgument where the folder holds something else.
-  static Result<SurfaceWriter> Create(const std::string& path, const Camera& camera, double largest_depth,
+  // Makes the folder, removes frames of an earlier surface there and writes camera.yaml. Fails with kUnwritable, and
+  // kInvalidArgument where the folder holds something else.
+  static Result<SurfaceWriter> Create(const std::string& path, const SurfaceSource& source,
                                       const SurfaceRunOptions& options);
 
   // Fail with kUnwritable.
@@ -34,10 +43,15 @@ class SurfaceWriter {
   Status Finish(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceSummary& summary);
 
  private:
-  SurfaceWriter(std::filesystem::path path, double depth_scale, const SurfaceRunOptions& options)
-      : path_(std::move(path)), depth_scale_(depth_scale), exr_(options.exr), npy_(options.npy) {}
+  SurfaceWriter(std::filesystem::path path, SurfaceSource source, double depth_scale, const SurfaceRunOptions& options)
+      : path_(std::move(path)),
+        source_(std::move(source)),
+        depth_scale_(depth_scale),
+        exr_(options.exr),
+        npy_(options.npy) {}
 
   std::filesystem::path path_;
+  SurfaceSource source_;
   double depth_scale_;
   bool exr_;
   bool npy_;

@@ -247,6 +247,7 @@ TEST(EndoNerfExport, ImagesOfEveryCameraAreThoseOfACenteredPinhole) {
     ASSERT_EQ(rows.size(), static_cast<std::size_t>(kRunFrames));
     const auto file = ReadCameraFile(folder.Path("out/pinhole.yaml"));
     ASSERT_TRUE(file.ok()) << file.status().message();
+    EXPECT_THAT(folder.Read("out/pinhole.yaml"), HasSubstr("# map units per step"));
     const double unit = *file->depth_scale;
     EXPECT_DOUBLE_EQ(unit, 0.1);  // the points are about 50 away
     for (int f = 0; f < kRunFrames; ++f) {

@@ -15,6 +15,7 @@ namespace pliant {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 std::vector<double> Params(const Camera& camera) { return {camera.params().begin(), camera.params().end()}; }
 
@@ -33,6 +34,20 @@ TEST(CameraFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(read->fps, file.fps);
   EXPECT_EQ(read->depth_scale, file.depth_scale);
   EXPECT_EQ(read->baseline_mm, file.baseline_mm);
+}
+
+TEST(CameraFile, InMapUnitsNamesNoUnit) {
+  const TestFolder folder;
+  CameraFile file{Camera::Create("PINHOLE", 64, 48, std::vector<double>{50, 51, 32, 24}).value()};
+  file.depth_scale = 0.003;
+  ASSERT_TRUE(WriteCameraFile(folder.Path("mm.yaml"), file).ok());
+  EXPECT_THAT(folder.Read("mm.yaml"), HasSubstr("depth_scale: 0.003  # mm per step\nunit: mm\n"));
+  ASSERT_TRUE(WriteCameraFile(folder.Path("map.yaml"), file, LengthUnit::kMapUnits).ok());
+  EXPECT_THAT(folder.Read("map.yaml"), HasSubstr("depth_scale: 0.003  # map units per step\n"));
+  EXPECT_THAT(folder.Read("map.yaml"), Not(HasSubstr("mm")));
+  const auto read = ReadCameraFile(folder.Path("map.yaml"));
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_EQ(read->depth_scale, file.depth_scale);
 }
 
 TEST(CameraFile, ThePhotometricCalibrationComesBackToo) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Meshes as other programs read them: each file is read back by its format's rules, not by our own writer's.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -161,7 +162,7 @@ TEST_F(MeshFilesTest, GltfComesBack) {
       const auto there = static_cast<std::size_t>(read->mesh.triangles[t][k]);
       EXPECT_TRUE(read->mesh.vertices[there].isApprox(mesh_.vertices[here], 1e-5F));
       EXPECT_TRUE(read->mesh.normals[there].isApprox(mesh_.normals[here]));
-      EXPECT_EQ(read->mesh.sigmas[there], mesh_.sigmas[here]);
+      EXPECT_FLOAT_EQ(read->mesh.sigmas[there], mesh_.sigmas[here]);
       EXPECT_EQ(read->mesh.texture_uvs[t][k], mesh_.texture_uvs[t][k]);
       EXPECT_TRUE(read->keys[1].positions[there].isApprox(keys_[1].positions[here], 1e-5F));
     }
@@ -171,6 +172,27 @@ TEST_F(MeshFilesTest, GltfComesBack) {
   EXPECT_EQ(read->keys[1].time_s, 1.0);
   EXPECT_EQ(read->submap, 3);
   EXPECT_EQ(read->texture_jpeg, texture_);
+}
+
+TEST_F(MeshFilesTest, GltfHasSigmasInMetersAsPositions) {
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_, 3});
+  const std::vector<float> sigmas = FloatsOf(model, model.meshes[0].primitives[0].attributes.at("_SIGMA"));
+  EXPECT_FLOAT_EQ(*std::ranges::max_element(sigmas), 0.001F * *std::ranges::max_element(mesh_.sigmas));
+}
+
+TEST_F(MeshFilesTest, GltfOfAnEarlierVersionHasSigmasInMapUnits) {
+  ASSERT_TRUE(WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_, 3}).ok());
+  std::string earlier = folder_.Read("a.glb");
+  const std::string field = "\"sigma_unit\"";
+  ASSERT_NE(earlier.find(field), std::string::npos);
+  earlier.replace(earlier.find(field), field.size(), "\"other_unit\"");
+  folder_.Write("earlier.glb", earlier);
+  const auto now = ReadGlb(folder_.Path("a.glb"));
+  const auto then = ReadGlb(folder_.Path("earlier.glb"));
+  ASSERT_TRUE(now.ok() && then.ok());
+  ASSERT_EQ(now->mesh.sigmas.size(), then->mesh.sigmas.size());
+  for (std::size_t v = 0; v < now->mesh.sigmas.size(); ++v)
+    EXPECT_FLOAT_EQ(then->mesh.sigmas[v], 0.001F * now->mesh.sigmas[v]);
 }
 
 TEST_F(MeshFilesTest, GltfThatIsDamagedOrAnothersIsRefused) {

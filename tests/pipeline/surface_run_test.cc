@@ -4,6 +4,7 @@
 #include "pliant/pipeline/surface_run.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -112,6 +113,22 @@ TEST_F(SurfaceRunTest, AFrameWithFewPointsHasNoDepthAndSaysWhy) {
   EXPECT_EQ(result.status().code(), ErrorCode::kInsufficient);
   EXPECT_THAT(result.status().message(), HasSubstr("needs 12 points"));
   EXPECT_THAT(folder_.Read("surface/surface.json"), HasSubstr("needs 12 points"));
+}
+
+TEST_F(SurfaceRunTest, SaysWhetherAMapUnitIsAMillimeter) {
+  const std::string images = WriteImages(19);
+  for (const auto& [metric, text] : {std::pair(true, "\"metric\": true"), std::pair(false, "\"metric\": false")}) {
+    RunDescription description{"0.1.0", {"pliant"}, 7, "nowhere", {}};
+    description.metric = metric;
+    auto writer = RunWriter::Create(folder_.Path("run"), TestCamera(), description, "Track:\n", {});
+    ASSERT_TRUE(writer.ok()) << writer.status().message();
+    for (int frame = 0; frame < kRunFrames; ++frame) ASSERT_TRUE(writer->Write(Report(frame)).ok());
+    ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+    EXPECT_FALSE(Make(images).ok());  // gray images have no depth
+    EXPECT_THAT(folder_.Read("surface/surface.json"), HasSubstr(text));
+    EXPECT_THAT(folder_.Read("surface/camera.yaml"), HasSubstr(metric ? "# mm per step" : "# map units per step"));
+    EXPECT_EQ(folder_.Read("surface/camera.yaml").find("unit: mm") != std::string::npos, metric);
+  }
 }
 
 TEST_F(SurfaceRunTest, LeavesAFolderOfOtherThingsAlone) {

@@ -82,7 +82,13 @@ Status WriteStereoCalibration(const std::string& path, const StereoCalibration& 
 Result<CameraFile> ReadCameraFile(const std::string& path, const CameraFileOptions& options = {});
 Result<Camera> ReadCamera(const std::string& path, const CameraFileOptions& options = {});
 
+// Of the lengths in a camera.yaml that is written beside the depths of a run.
+enum class LengthUnit {
+  kMillimeters,
+  kMapUnits,  // of a run that does not know what one is: the file names no unit, and ReadCameraFile takes 1 for it
+};
+
 // Writes a camera.yaml, so that ReadCameraFile gives the same numbers back. Fails with kUnwritable.
-Status WriteCameraFile(const std::string& path, const CameraFile& file);
+Status WriteCameraFile(const std::string& path, const CameraFile& file, LengthUnit unit = LengthUnit::kMillimeters);
 
 }  // namespace pliant
