@@ -3,6 +3,8 @@
 
 #include "pliant/datasets/surface_folder.h"
 
+#include <system_error>
+
 #include <nlohmann/json.hpp>
 
 #include "datasets/image_file.h"
@@ -11,6 +13,7 @@
 #include "pliant/datasets/native_layout.h"
 #include "pliant/io/camera_file.h"
 #include "pliant/io/point_cloud.h"
+#include "pliant/io/run_reader.h"
 
 namespace pliant {
 namespace {
@@ -47,6 +50,7 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
       return Status(ErrorCode::kUnreadable,
                     Quoted(summary) + " says that the surface was never finished; make it again");
     folder.run = json.value("run", "");
+    folder.trajectory_checksum = json.value("trajectory_crc32", "");
     for (const auto& frame : json.at("frames")) {
       if (!frame.at("note").get<std::string>().empty()) {
         folder.frames_without_depth.push_back(frame.at("frame").get<int>());
@@ -71,6 +75,28 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
     return Status(ErrorCode::kUnreadable, Quoted(summary) + " is not a surface's: " + error.what());
   }
   return folder;
+}
+
+Status CheckSurfaceOfRun(const SurfaceFolder& surface, const std::string& run_path) {
+  const std::string made_of = surface.run.string();
+  const bool is_there = Exists(made_of);
+  std::error_code error;
+  const bool is_folder = std::filesystem::equivalent(made_of, run_path, error);
+  const auto checksum = TrajectoryChecksum(run_path);
+  if (!checksum.ok()) return Status::Ok();  // the run cannot be read, which its readers say
+  if (surface.trajectory_checksum.empty()) {
+    if (!is_there || is_folder) return Status::Ok();
+    const auto of_surface = TrajectoryChecksum(made_of);
+    if (of_surface.ok() && *of_surface == *checksum) return Status::Ok();
+  } else if (surface.trajectory_checksum == *checksum) {
+    return Status::Ok();
+  }
+  const std::string what = "the surface " + Quoted(surface.path.string()) + " was made of ";
+  if (is_folder)
+    return {ErrorCode::kMismatch, what + "an earlier run in " + Quoted(run_path) +
+                                      ", which was replaced or continued since; make it again with pliant surface"};
+  return {ErrorCode::kMismatch,
+          what + "the run " + Quoted(made_of) + ", not of " + Quoted(run_path) + "; make one with pliant surface"};
 }
 
 Result<SurfaceDepth> ReadSurfaceDepth(const SurfaceFolder& folder, const SurfaceFolder::Frame& frame) {

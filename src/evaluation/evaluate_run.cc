@@ -65,10 +65,8 @@ Status AddDense(const EvaluationInput& run, const RunReferences& references, con
   auto dense = ComputeDenseError(*surface, run, *references.truth->sequence, options.points.scale);
   if (!dense.ok()) return dense.status();
   evaluation->dense = *std::move(dense);
-  std::error_code error;
-  if (std::filesystem::exists(surface->run, error) && !std::filesystem::equivalent(surface->run, run.name, error))
-    evaluation->notes.push_back("the surface " + Quoted(references.surface_path) + " says that it was made of " +
-                                Quoted(surface->run.string()) + ", and not of this run");
+  if (const Status status = CheckSurfaceOfRun(*surface, run.name); !status.ok())
+    evaluation->notes.push_back(status.message());
   // The images are read once more, from their beginning.
   const auto images = OpenSequence(references.truth->request);
   if (!images.ok()) return images.status();

@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
 
 #include "datasets/image_file.h"
-#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/camera/same_camera.h"
 #include "pliant/datasets/run_sequence.h"
@@ -20,15 +18,6 @@ namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Also where one is a copy of the other.
-bool IsSameRun(const std::string& a, const std::string& b) {
-  std::error_code error;
-  if (fs::equivalent(a, b, error)) return true;
-  const auto path_a = ReadFile(a + "/trajectory.txt");
-  const auto path_b = ReadFile(b + "/trajectory.txt");
-  return path_a.ok() && path_b.ok() && *path_a == *path_b;
-}
 
 }  // namespace
 
@@ -58,9 +47,7 @@ Result<SurfaceFolder> ReadSurfaceOfRun(const std::string& path, const std::strin
   const auto mismatch = [&](const std::string& what) {
     return Status(ErrorCode::kMismatch, "the surface " + Quoted(path) + " " + what + "; make one with pliant surface");
   };
-  const std::string made_of = surface->run.string();
-  if (Exists(made_of) && !IsSameRun(made_of, run_path))
-    return mismatch("was made of the run " + Quoted(made_of) + ", not of " + Quoted(run_path));
+  if (Status status = CheckSurfaceOfRun(*surface, run_path); !status.ok()) return status;
   const Camera& camera = *known.camera;
   if (surface->camera.width() != camera.width() || surface->camera.height() != camera.height())
     return mismatch("has images of " + SizeText(surface->camera.width(), surface->camera.height()) +

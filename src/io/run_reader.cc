@@ -4,7 +4,11 @@
 #include "pliant/io/run_reader.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <filesystem>
+
+#include <zlib.h>
 
 #include "io/run_format.h"
 #include "io/tum_line.h"
@@ -169,6 +173,15 @@ Result<Run> ReadRun(const std::string& path) {
   if (has_frames)
     if (Status status = NumberPoses(path, &run); !status.ok()) return status;
   return run;
+}
+
+Result<std::string> TrajectoryChecksum(const std::string& run_path) {
+  const auto bytes = ReadFile(run_path + "/trajectory.txt");
+  if (!bytes.ok()) return bytes.status();
+  const auto checksum = crc32_z(0, reinterpret_cast<const Bytef*>(bytes->data()), bytes->size());
+  std::array<char, 9> digits;
+  std::snprintf(digits.data(), digits.size(), "%08x", static_cast<unsigned int>(checksum));
+  return std::string(digits.data());
 }
 
 }  // namespace pliant

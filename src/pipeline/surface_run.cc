@@ -291,6 +291,8 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (run->poses.empty())
     return Status(ErrorCode::kInsufficient,
                   "no frame of the run " + Quoted(request.run_path) + " was tracked; there is no surface to see");
+  const auto checksum = TrajectoryChecksum(request.run_path);
+  if (!checksum.ok()) return checksum.status();
   SequenceRequest source = SequenceOfRun(request.run_path, request.sequence_path, request.camera_path);
   if (!request.mask_path.empty()) source.mask_path = request.mask_path;
   if (Status status = CheckMasksOfRun(source, *run); !status.ok()) return status;
@@ -306,9 +308,10 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   const TrackedImage tracked = TrackedImageOf(*run);
   const auto estimator = DenseDepthEstimator::Create(*known->camera, tracked, options.depth, ThreadsOf(options));
   if (!estimator.ok()) return estimator.status();
-  auto writer = SurfaceWriter::Create(
-      request.output_path,
-      {*known->camera, LargestDepth(*frames), run->summary ? run->summary->description.metric : std::nullopt}, options);
+  auto writer = SurfaceWriter::Create(request.output_path,
+                                      {*known->camera, LargestDepth(*frames),
+                                       run->summary ? run->summary->description.metric : std::nullopt, *checksum},
+                                      options);
   if (!writer.ok()) return writer.status();
   RunViews images(*std::move(sequence), *frames, *known, options.masks, options.pairs ? ThreadsOf(options) : 0);
   SurfaceSummary summary{.windows = estimator->windows(), .frames = missing, .warnings = WarningsOf(missing, *run)};

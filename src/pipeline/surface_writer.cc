@@ -136,6 +136,7 @@ Status SurfaceWriter::Finish(const SurfaceRequest& request, const SurfaceRunOpti
                {"command_line", request.command_line},
                {"status", summary.stopped ? "interrupted" : "completed"},
                {"run", fs::absolute(request.run_path).lexically_normal().string()},
+               {"trajectory_crc32", source_.trajectory_checksum},
                {"metric", source_.metric ? Json(*source_.metric) : Json()},
                {"depth_scale", depth_scale_},
                {"windows",

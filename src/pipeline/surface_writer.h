@@ -26,8 +26,9 @@ struct SurfaceMaps {
 // The run that a surface is made of.
 struct SurfaceSource {
   Camera camera;
-  double largest_depth = 0;         // that can be written, map units
-  std::optional<bool> metric = {};  // RunDescription::metric
+  double largest_depth = 0;              // that can be written, map units
+  std::optional<bool> metric = {};       // RunDescription::metric
+  std::string trajectory_checksum = {};  // TrajectoryChecksum of the run
 };
 
 class SurfaceWriter {

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -21,13 +20,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The run that the surface was made of; of one that is not there any more, the only run that is shown.
-std::optional<std::size_t> RunOf(const SurfaceFolder& surface, const std::vector<std::string>& run_paths) {
+// The run that the surface was made of, or a copy of it; where it cannot be known since the surface is of an earlier
+// version and that run is not there any more, the only run that is shown.
+Result<std::size_t> RunOf(const SurfaceFolder& surface, const std::vector<std::string>& run_paths) {
   std::error_code error;
+  for (std::size_t i = 0; i < run_paths.size(); ++i) {
+    if (!fs::equivalent(surface.run, run_paths[i], error)) continue;
+    if (Status status = CheckSurfaceOfRun(surface, run_paths[i]); !status.ok()) return status;
+    return i;
+  }
+  const bool is_known = !surface.trajectory_checksum.empty() || Exists(surface.run.string());
   for (std::size_t i = 0; i < run_paths.size(); ++i)
-    if (fs::equivalent(surface.run, run_paths[i], error)) return i;
-  if (run_paths.size() == 1 && !Exists(surface.run.string())) return 0;
-  return std::nullopt;
+    if ((is_known || run_paths.size() == 1) && CheckSurfaceOfRun(surface, run_paths[i]).ok()) return i;
+  return Status(ErrorCode::kMismatch, "the surface " + Quoted(surface.path.string()) + " was made of the run " +
+                                          Quoted(surface.run.string()) + ", which is not among those that are shown");
 }
 
 // surface.glb, or of several submaps surface_0.glb, surface_1.glb, ..., of which some may have no mesh.
@@ -57,10 +63,7 @@ Result<std::vector<std::vector<ViewedMesh>>> ReadMeshes(const ViewRequest& reque
     const auto surface = ReadSurfaceFolder(path);
     if (!surface.ok()) return surface.status();
     const auto run = RunOf(*surface, request.run_paths);
-    if (!run)
-      return Status(ErrorCode::kMismatch, "the surface " + Quoted(path) + " was made of the run " +
-                                              Quoted(surface->run.string()) +
-                                              ", which is not among those that are shown");
+    if (!run.ok()) return run.status();
     const std::vector<fs::path> files = MeshFilesOf(path);
     if (files.empty())
       return Status(ErrorCode::kNotFound,

@@ -3,6 +3,7 @@
 
 #include "pliant/datasets/surface_folder.h"
 
+#include <filesystem>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -68,6 +69,32 @@ TEST_F(SurfaceFolderFile, ComparedNoWindowsThatCannotBe) {
     EXPECT_EQ(surface.status().code(), ErrorCode::kUnreadable);
     EXPECT_THAT(surface.status().message(), HasSubstr("windows that were compared what cannot be")) << windows;
   }
+}
+
+TEST_F(SurfaceFolderFile, KnowsTheRunThatItWasMadeOf) {
+  for (const char* run : {"run", "copy", "other"}) {
+    std::filesystem::create_directories(folder_.Path(run));
+    folder_.Write(std::string(run) + "/trajectory.txt", std::string(run) == "other" ? "987654321" : "123456789");
+  }
+  const auto read = [&](const std::string& checksum) {
+    folder_.Write("surface.json", R"({"status": "completed", "frames": [], "run": ")" + folder_.Path("run") + "\"" +
+                                      (checksum.empty() ? "" : R"(, "trajectory_crc32": ")" + checksum + "\"") + "}");
+    return *ReadSurfaceFolder(folder_.Path("."));
+  };
+  const SurfaceFolder surface = read("cbf43926");
+  EXPECT_TRUE(CheckSurfaceOfRun(surface, folder_.Path("run")).ok());
+  EXPECT_TRUE(CheckSurfaceOfRun(surface, folder_.Path("copy")).ok());
+  EXPECT_THAT(CheckSurfaceOfRun(surface, folder_.Path("other")).message(), HasSubstr("was made of the run"));
+
+  const Status replaced = CheckSurfaceOfRun(read("01234567"), folder_.Path("run"));
+  EXPECT_EQ(replaced.code(), ErrorCode::kMismatch);
+  EXPECT_THAT(replaced.message(), HasSubstr("which was replaced or continued since"));
+
+  // Earlier versions name the run's folder alone.
+  const SurfaceFolder earlier = read("");
+  EXPECT_TRUE(CheckSurfaceOfRun(earlier, folder_.Path("run")).ok());
+  EXPECT_TRUE(CheckSurfaceOfRun(earlier, folder_.Path("copy")).ok());
+  EXPECT_EQ(CheckSurfaceOfRun(earlier, folder_.Path("other")).code(), ErrorCode::kMismatch);
 }
 
 TEST_F(SurfaceFolderFile, OfAnotherFormIsRefused) {

@@ -399,6 +399,11 @@ TEST(NeuralExport, RefusesASurfaceThatIsNotTheRuns) {
   WriteSurface(folder, TestCamera(), {10}, folder.Path("other"));
   EXPECT_THAT(ExportError(folder, "nerfstudio", ErrorCode::kMismatch, request), HasSubstr("was made of the run"));
 
+  WriteSurface(folder, TestCamera(), {10}, folder.Path("run"));
+  std::string replaced = folder.Read("surface/surface.json");
+  folder.Write("surface/surface.json", replaced.insert(1, "\"trajectory_crc32\": \"00000000\", "));
+  EXPECT_THAT(ExportError(folder, "nerfstudio", ErrorCode::kMismatch, request), HasSubstr("which was replaced"));
+
   const Camera small = Camera::Create("PINHOLE", 320, 240, std::vector<double>{250, 250, 160, 120}).value();
   WriteSurface(folder, small, {10}, folder.Path("run"));
   EXPECT_THAT(ExportError(folder, "nerfstudio", ErrorCode::kMismatch, request),

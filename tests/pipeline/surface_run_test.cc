@@ -131,6 +131,18 @@ TEST_F(SurfaceRunTest, SaysWhetherAMapUnitIsAMillimeter) {
   }
 }
 
+TEST_F(SurfaceRunTest, KnowsWhenTheRunIsReplaced) {
+  WriteRun(folder_);
+  EXPECT_FALSE(Make(WriteImages(19)).ok());  // gray images have no depth
+  const auto surface = ReadSurfaceFolder(folder_.Path("surface"));
+  ASSERT_TRUE(surface.ok()) << surface.status().message();
+  EXPECT_TRUE(CheckSurfaceOfRun(*surface, folder_.Path("run")).ok());
+  WriteRunWithALostFrame();  // the same poses
+  EXPECT_TRUE(CheckSurfaceOfRun(*surface, folder_.Path("run")).ok());
+  WriteRunOfTwoSubmaps(folder_);
+  EXPECT_EQ(CheckSurfaceOfRun(*surface, folder_.Path("run")).code(), ErrorCode::kMismatch);
+}
+
 TEST_F(SurfaceRunTest, LeavesAFolderOfOtherThingsAlone) {
   WriteRun(folder_);
   std::filesystem::create_directories(folder_.Path("surface/depth"));

@@ -14,6 +14,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "pliant/io/gltf.h"
+#include "pliant/io/run_reader.h"
 #include "viewer/draw_legend.h"
 #include "viewer/draw_scene.h"
 #include "viewer/drawing.h"
@@ -264,6 +265,21 @@ TEST_F(FigureTest, DrawsTheSurfaceInTheColorsOfItsValues) {
   options_.azimuth_deg = 170;
   const cv::Mat behind = draw("behind.png");
   EXPECT_EQ(CountPixels(behind(cv::Range(400, bottom), cv::Range(0, 488)), lowest), 0);
+}
+
+TEST_F(FigureTest, RefusesTheSurfaceOfARunThatWasReplaced) {
+  WriteSquare(folder_);
+  ViewRequest request = Request();
+  request.surface_paths = {folder_.Path("surface")};
+  for (const std::string& checksum : {TrajectoryChecksum(folder_.Path("run")).value(), std::string("00000000")}) {
+    folder_.Write("surface/surface.json", "{\"status\": \"completed\", \"run\": \"" + folder_.Path("run") +
+                                              "\", \"trajectory_crc32\": \"" + checksum + "\", \"frames\": []}");
+    const Status status = WriteFigure(request, options_, {10}, folder_.Path("figure.png")).status();
+    if (checksum != "00000000")
+      EXPECT_TRUE(status.ok()) << status.message();
+    else
+      EXPECT_THAT(status.message(), HasSubstr("which was replaced or continued since"));
+  }
 }
 
 TEST_F(FigureTest, DrawsTheSurfaceInAFilmAndInVectors) {

@@ -41,6 +41,7 @@ struct SurfaceFolder {
   std::vector<Frame> frames;                   // that have a depth
   std::optional<ComparedWindows> windows;      // nothing: it does not say
   std::vector<int> frames_without_depth = {};  // that were chosen, too
+  std::string trajectory_checksum = {};        // TrajectoryChecksum of the run; empty: an earlier version's
 };
 
 struct SurfaceDepth {
@@ -55,6 +56,10 @@ struct SurfaceDepth {
 
 // Fails with kNotFound or kUnreadable.
 Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path);
+// Fails with kMismatch where the surface was made of another run than is in this folder now: of one elsewhere that this
+// is no copy of, or of one that was replaced. A surface of an earlier version is only known to be of another run where
+// the folder that it names is there.
+Status CheckSurfaceOfRun(const SurfaceFolder& surface, const std::string& run_path);
 // Fails also with kMismatch where an image has not the camera's size.
 Result<SurfaceDepth> ReadSurfaceDepth(const SurfaceFolder& folder, const SurfaceFolder::Frame& frame);
 // What the frame shows of the mesh: its vertices in the camera's frame, map units; none where there is no mesh. Fails

@@ -56,6 +56,10 @@ struct Run {
 // (poses that belong to no row of frames.csv).
 Result<Run> ReadRun(const std::string& path);
 
+// CRC-32 of the bytes of trajectory.txt, eight hexadecimal digits: what was made of a run tells by it that another run
+// is in the folder now. Fails with kNotFound or kUnreadable.
+Result<std::string> TrajectoryChecksum(const std::string& run_path);
+
 struct FrameObservations {
   int frame_idx = 0;
   std::vector<PointObservation> observations;
