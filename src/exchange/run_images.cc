@@ -37,6 +37,7 @@ Result<RunImage> RunImages::Read(const SourceFrame& frame) {
   const SurfaceFolder::Frame* entry = FindFrame(*source_->surface, frame.frame_idx);
   auto surface = ReadSurfaceDepth(*source_->surface, *entry);
   if (!surface.ok()) return surface.status();
+  surface->KeepMeasured();
   result.depth = surface->depth;
   return result;
 }

@@ -20,7 +20,7 @@ namespace pliant {
 struct RunImage {
   cv::Mat image;  // 8-bit BGR, the size of the run's camera
   cv::Mat mask;   // 8-bit, 0 = ignore; empty: the sequence has no masks
-  cv::Mat depth;  // CV_32FC1, z along the optical axis, map units, 0 = none; empty: the source has no surface
+  cv::Mat depth;  // CV_32FC1, measured z along the optical axis, map units, 0 = none; empty: the source has no surface
 };
 
 class RunImages {

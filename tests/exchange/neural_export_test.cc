@@ -339,6 +339,29 @@ TEST(EndoNerfExport, MasksAreWhiteWhereTheSequencesAreBlack) {
   EXPECT_EQ(cv::countNonZero(ReadPng(folder.Path("out/masks/000018.png")) != 255 - mask), 0);
 }
 
+TEST(NeuralExport, DepthsThatWereFilledAreNone) {
+  const TestFolder folder;
+  WriteNeuralRun(folder, TestCamera());
+  WriteSurface(folder, TestCamera(), {10}, folder.Path("run"));
+  const cv::Rect hole(300, 200, 20, 10);
+  cv::Mat filled(480, 640, CV_8UC1, cv::Scalar(0));
+  filled(hole).setTo(255);
+  std::filesystem::create_directories(folder.Path("surface/filled"));
+  ASSERT_TRUE(WritePng(folder.Path("surface/filled/10.png"), filled).ok());
+  for (const std::string format : {"nerfstudio", "endonerf"}) {
+    ExportRequest request = WithSurface(folder);
+    request.run_path = folder.Path("run");
+    request.format = format;
+    request.output_path = folder.Path(format);
+    const auto summary = ExportRun(request, {});
+    ASSERT_TRUE(summary.ok()) << summary.status().message();
+    const cv::Mat depth = ReadPng(request.output_path + "/depth/000010.png");
+    ASSERT_EQ(depth.size(), filled.size()) << format;
+    EXPECT_EQ(cv::countNonZero(depth(hole)), 0) << format;
+    EXPECT_GT(depth.at<std::uint16_t>(hole.y - 1, hole.x), 0) << format;
+  }
+}
+
 TEST(NeuralExport, EverySubmapHasAFolder) {
   for (const auto& [format, file] :
        {std::pair("nerfstudio", "transforms.json"), std::pair("endonerf", "poses_bounds.npy")}) {
