@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -115,15 +116,28 @@ DepthFigures FiguresOf(const std::vector<double>& truth, const Depth& at, const 
   return sum;
 }
 
-void AddWeighted(const DepthFigures& figures, double weight, DepthFigures* sum) {
-  sum->abs_rel += weight * figures.abs_rel;
-  sum->sq_rel_mm += weight * figures.sq_rel_mm;
-  sum->rmse_mm += weight * figures.rmse_mm;
-  sum->rmse_log += weight * figures.rmse_log;
+// Means are sums that are divided at the end: those of shares are at most 1 then, which weighted sums exceed by
+// rounding.
+void AddFigures(const DepthFigures& figures, DepthFigures* sum) {
+  sum->abs_rel += figures.abs_rel;
+  sum->sq_rel_mm += figures.sq_rel_mm;
+  sum->rmse_mm += figures.rmse_mm;
+  sum->rmse_log += figures.rmse_log;
   for (std::size_t k = 0; k < 3; ++k) {
-    sum->below[k] += weight * figures.below[k];
-    sum->within_mm[k] += weight * figures.within_mm[k];
+    sum->below[k] += figures.below[k];
+    sum->within_mm[k] += figures.within_mm[k];
   }
+}
+
+// Of no frames: zeros.
+DepthFigures MeanFigures(DepthFigures sum, std::ptrdiff_t frames) {
+  const double count = std::max(1.0, static_cast<double>(frames));
+  for (double* value : {&sum.abs_rel, &sum.sq_rel_mm, &sum.rmse_mm, &sum.rmse_log}) *value /= count;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum.below[k] /= count;
+    sum.within_mm[k] /= count;
+  }
+  return sum;
 }
 
 // Of a frame, before its pixels are read again: all frames' pixels at once would be gigabytes.
@@ -163,32 +177,44 @@ void SetScales(ErrorScale scale, std::vector<FrameScale>* frames) {
       for (FrameScale& frame : *frames) frame.*of = frame.*of > 0 ? 1.0 : 0.0;
 }
 
-double CountOf(const std::vector<FrameScale>& frames, bool FrameScale::*what) {
-  return static_cast<double>(std::ranges::count(frames, true, what));
+std::ptrdiff_t CountOf(const std::vector<FrameScale>& frames, bool FrameScale::*what) {
+  return std::ranges::count(frames, true, what);
 }
 
 // The figures of one frame after the other.
 class DenseErrorSum {
  public:
   // `without_pixels`: frames that have a true depth, and no other one; nothing of them is known.
-  DenseErrorSum(const std::vector<FrameScale>& frames, int without_pixels)
+  DenseErrorSum(const std::vector<FrameScale>& frames, int without_pixels, ErrorScale scale)
       : frames_(frames), all_frames_(static_cast<double>(frames.size()) + without_pixels) {
     error_.frames = static_cast<int>(frames.size());
     error_.frames_without_depth = without_pixels;
+    error_.scale = scale;
   }
 
   void Add(const Pixels& pixels, const FrameScale& scale) {
     AddDepths(pixels, scale);
     AddFilled(pixels, scale.scale);
-    AddMesh(pixels, scale.scale, /*with_depth=*/true, CountOf(frames_, &FrameScale::has_vertices), &error_.mesh);
-    AddMesh(pixels, scale.scale, /*with_depth=*/false, CountOf(frames_, &FrameScale::has_vertices_alone),
-            &error_.mesh_alone);
+    AddMesh(pixels, scale.scale, /*with_depth=*/true, &error_.mesh);
+    AddMesh(pixels, scale.scale, /*with_depth=*/false, &error_.mesh_alone);
     vertices_ += static_cast<double>(pixels.vertex_truth_mm.size());
     vertices_alone_ += static_cast<double>(pixels.Vertices(false));
   }
 
   DenseError Take() {
-    error_.mesh_vertices = vertices_ / static_cast<double>(frames_.size());
+    const auto frames = static_cast<double>(frames_.size());
+    for (DepthFigures* figures : {&error_.estimate, &error_.certain_half, &error_.null})
+      *figures = MeanFigures(*figures, std::ssize(frames_));
+    error_.interpolation =
+        MeanFigures(error_.interpolation,
+                    std::ranges::count_if(frames_, [](const FrameScale& frame) { return frame.interpolation > 0; }));
+    error_.filled = MeanFigures(error_.filled, CountOf(frames_, &FrameScale::has_filled));
+    error_.mesh = MeanFigures(error_.mesh, CountOf(frames_, &FrameScale::has_vertices));
+    error_.mesh_alone = MeanFigures(error_.mesh_alone, CountOf(frames_, &FrameScale::has_vertices_alone));
+    for (double* share : {&error_.within_1_sigma, &error_.within_2_sigma, &error_.filled_share}) *share /= frames;
+    error_.known_share /= all_frames_;
+    for (double& share : error_.complete_mm) share /= all_frames_;
+    error_.mesh_vertices = vertices_ / frames;
     error_.mesh_alone_share = vertices_ > 0.0 ? vertices_alone_ / vertices_ : 0.0;
     return error_;
   }
@@ -196,7 +222,7 @@ class DenseErrorSum {
  private:
   void AddDepths(const Pixels& pixels, const FrameScale& scale);
   void AddFilled(const Pixels& pixels, double scale);
-  static void AddMesh(const Pixels& pixels, double scale, bool with_depth, double frames, DepthFigures* figures);
+  static void AddMesh(const Pixels& pixels, double scale, bool with_depth, DepthFigures* figures);
 
   const std::vector<FrameScale>& frames_;
   double all_frames_;
@@ -205,30 +231,27 @@ class DenseErrorSum {
   double vertices_alone_ = 0.0;
 };
 
-void DenseErrorSum::AddMesh(const Pixels& pixels, double scale, bool with_depth, double frames, DepthFigures* figures) {
+void DenseErrorSum::AddMesh(const Pixels& pixels, double scale, bool with_depth, DepthFigures* figures) {
   if (pixels.Vertices(with_depth) == 0) return;
   std::vector<bool> counts(pixels.vertex_truth_mm.size());
   for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = (i < pixels.vertices_with_depth) == with_depth;
   const auto estimate = [&](std::size_t i) { return scale * pixels.vertex_estimate[i]; };
-  AddWeighted(FiguresOf(pixels.vertex_truth_mm, estimate, counts), 1.0 / frames, figures);
+  AddFigures(FiguresOf(pixels.vertex_truth_mm, estimate, counts), figures);
 }
 
 // The pixels that were filled.
 void DenseErrorSum::AddFilled(const Pixels& pixels, double scale) {
   if (pixels.filled_truth_mm.empty()) return;
   const auto estimate = [&](std::size_t i) { return scale * pixels.filled_estimate[i]; };
-  AddWeighted(FiguresOf(pixels.filled_truth_mm, estimate, {}), 1.0 / CountOf(frames_, &FrameScale::has_filled),
-              &error_.filled);
-  error_.filled_share +=
-      static_cast<double>(pixels.filled_truth_mm.size()) / (pixels.with_truth * static_cast<double>(frames_.size()));
+  AddFigures(FiguresOf(pixels.filled_truth_mm, estimate, {}), &error_.filled);
+  error_.filled_share += static_cast<double>(pixels.filled_truth_mm.size()) / pixels.with_truth;
 }
 
 void DenseErrorSum::AddDepths(const Pixels& pixels, const FrameScale& scale) {
-  const double weight = 1.0 / static_cast<double>(frames_.size());
   const auto& truth = pixels.truth_mm;
   const auto estimate = [&](std::size_t i) { return scale.scale * pixels.estimate[i]; };
   const DepthFigures of_estimate = FiguresOf(truth, estimate, {});
-  AddWeighted(of_estimate, weight, &error_.estimate);
+  AddFigures(of_estimate, &error_.estimate);
   const double middle = Median(pixels.sigma);
   std::vector<bool> certain;
   double inside[2] = {0.0, 0.0};
@@ -237,21 +260,18 @@ void DenseErrorSum::AddDepths(const Pixels& pixels, const FrameScale& scale) {
     const double ratio = std::abs(estimate(i) - truth[i]) / (pixels.sigma[i] * estimate(i));
     for (int k = 0; k < 2; ++k) inside[k] += ratio < k + 1 ? 1.0 : 0.0;
   }
-  AddWeighted(FiguresOf(truth, estimate, certain), weight, &error_.certain_half);
+  AddFigures(FiguresOf(truth, estimate, certain), &error_.certain_half);
   const auto known = static_cast<double>(truth.size());
-  error_.within_1_sigma += weight * inside[0] / known;
-  error_.within_2_sigma += weight * inside[1] / known;
+  error_.within_1_sigma += inside[0] / known;
+  error_.within_2_sigma += inside[1] / known;
   const double share = known / pixels.with_truth;
-  error_.known_share += share / all_frames_;
-  for (std::size_t k = 0; k < 3; ++k) error_.complete_mm[k] += share * of_estimate.within_mm[k] / all_frames_;
+  error_.known_share += share;
+  for (std::size_t k = 0; k < 3; ++k) error_.complete_mm[k] += share * of_estimate.within_mm[k];
   const double constant = Median(truth);
-  AddWeighted(FiguresOf(truth, [&](std::size_t) { return constant; }, {}), weight, &error_.null);
+  AddFigures(FiguresOf(truth, [&](std::size_t) { return constant; }, {}), &error_.null);
   if (pixels.interpolation.empty()) return;
   const auto interpolated = [&](std::size_t i) { return scale.interpolation * pixels.interpolation[i]; };
-  const auto interpolated_frames =
-      std::ranges::count_if(frames_, [](const FrameScale& frame) { return frame.interpolation > 0; });
-  AddWeighted(FiguresOf(truth, interpolated, {}), 1.0 / static_cast<double>(interpolated_frames),
-              &error_.interpolation);
+  AddFigures(FiguresOf(truth, interpolated, {}), &error_.interpolation);
 }
 
 // Nothing: the frame has no true depth. Without pixels: none has both depths.
@@ -315,7 +335,7 @@ Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const Evaluat
     return Status(ErrorCode::kInsufficient,
                   "no frame of the surface " + Quoted(surface.path.string()) + " has pixels whose true depth is known");
   SetScales(scale, &frames);
-  DenseErrorSum sum(frames, without_pixels);
+  DenseErrorSum sum(frames, without_pixels, scale);
   std::size_t next = 0;
   const auto add = [&](const Pixels& pixels, int /*submap*/) {
     if (!pixels.truth_mm.empty()) sum.Add(pixels, frames[next++]);

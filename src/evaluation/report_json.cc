@@ -92,7 +92,8 @@ Json ToJson(const DepthFigures& f) {
 }
 
 Json ToJson(const DenseError& e) {
-  Json json = {{"frames_compared", e.frames},
+  Json json = {{"scale", EnumName(e.scale)},
+               {"frames_compared", e.frames},
                {"frames_without_depth", e.frames_without_depth},
                {"known_share", e.known_share},
                {"complete_1_mm", e.complete_mm[0]},

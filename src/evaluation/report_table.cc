@@ -62,8 +62,9 @@ std::string DenseRow(const char* what, const DepthFigures& f) {
 std::string DenseTable(const DenseError& e) {
   const std::string without =
       e.frames_without_depth > 0 ? FormatText(", %d more have no depth", e.frames_without_depth) : "";
-  return FormatText("dense depth (%d frames%s; %.1f %% of the pixels with a true depth are known)\n", e.frames,
-                    without.c_str(), 100 * e.known_share) +
+  const std::string scale(EnumName(e.scale));
+  return FormatText("dense depth (scale %s; %d frames%s; %.1f %% of the pixels with a true depth are known)\n",
+                    scale.c_str(), e.frames, without.c_str(), 100 * e.known_share) +
          (e.textured ? FormatText("  of the %.1f %% that have texture and are seen in other images: %.1f %%\n",
                                   100 * e.textured->share, 100 * e.textured->known_share)
                      : "") +

@@ -5,9 +5,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
 #include "pliant/datasets/png_file.h"
+#include "pliant/evaluation/report.h"
 #include "pliant/io/camera_file.h"
 #include "pliant/io/ply.h"
 #include "support/rendered_sequence.h"
@@ -69,6 +71,33 @@ TEST_F(DenseErrorTest, WithoutAScaleTheUnitCounts) {
   EXPECT_NEAR(error->estimate.rmse_log, -std::log(0.75), 1e-3);
   EXPECT_EQ(error->estimate.below[0], 0.0);
   EXPECT_EQ(error->within_2_sigma, 0.0);
+}
+
+TEST_F(DenseErrorTest, SharesAreAtMostOne) {
+  constexpr std::size_t kFrames = 9;  // 1 / 9, added 9 times, is more than 1 in floating point
+  SurfaceFolder surface = WriteSurface([](cv::Mat*) {});
+  const SurfaceFolder::Frame frame = surface.frames[0];
+  surface.frames.assign(kFrames, frame);
+  const auto error = ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame);
+  ASSERT_TRUE(error.ok()) << error.status().message();
+  EXPECT_EQ(error->frames, static_cast<int>(kFrames));
+  EXPECT_EQ(error->estimate.below[0], 1.0);
+  EXPECT_EQ(error->estimate.within_mm[2], 1.0);
+  EXPECT_EQ(error->within_2_sigma, 1.0);
+  EXPECT_LE(error->known_share, 1.0);
+  EXPECT_LE(error->complete_mm[2], 1.0);
+}
+
+TEST_F(DenseErrorTest, TheTableNamesItsScale) {
+  const SurfaceFolder surface = WriteSurface([](cv::Mat*) {});
+  for (const ErrorScale scale : {ErrorScale::kPerFrame, ErrorScale::kGlobal, ErrorScale::kNone}) {
+    Evaluation evaluation;
+    evaluation.dense = *ComputeDenseError(surface, {}, sequence_, scale);
+    const std::string name(EnumName(scale));
+    EXPECT_THAT(EvaluationTable(evaluation), testing::HasSubstr("dense depth (scale " + name + "; 2 frames"));
+    const auto json = nlohmann::json::parse(EvaluationJson(evaluation));
+    EXPECT_EQ(json.at("dense").at("scale"), name);
+  }
 }
 
 TEST_F(DenseErrorTest, TheMeshIsComparedWhereTheFrameHasADepthAndElsewhere) {

@@ -34,7 +34,8 @@ struct DenseCompleteness {
 };
 
 struct DenseError {
-  int frames = 0;                // that have pixels with both depths
+  ErrorScale scale = ErrorScale::kPerFrame;  // of the depths
+  int frames = 0;                            // that have pixels with both depths
   int frames_without_depth = 0;  // that have a true depth, and no other: known_share and complete_mm count them
   double known_share = 0;        // of the pixels with a true depth
   std::array<double, 3> complete_mm = {};  // share of these that are known to 1, 2, 5 mm
