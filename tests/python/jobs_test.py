@@ -59,8 +59,17 @@ class Jobs(TestCase):
         self.assertIn(("depth", 2, 2), told)
         with self.assertRaisesRegex(ValueError, "has none of the chosen frames"):
             pliant.surface(RUN, self.folder / "other", frames=[9999])
-        with self.assertWarnsRegex(UserWarning, "frame 9999 is not in the run"):
+        with self.assertWarnsRegex(UserWarning, "frame 9999 is not in the run, whose frames are 0 to "):
             pliant.surface(RUN, self.folder / "third", {"Surface.mesh_columns": 0}, frames=[20, 9999])
+
+    def test_a_surface_whose_run_was_replaced_is_noted(self):
+        surface = pliant.surface(RUN, self.folder / "surface", {"Surface.mesh_columns": 0}, frames=[20])
+        notes = pliant.evaluate(RUN, SEQUENCE, surface_path=self.folder / "surface")["notes"]
+        self.assertNotIn("replaced", " ".join(notes))
+        (self.folder / "surface" / "surface.json").write_text(
+            json.dumps({**surface, "trajectory_crc32": "00000000"}))
+        with self.assertWarnsRegex(UserWarning, "which was replaced or continued since"):
+            pliant.evaluate(RUN, SEQUENCE, surface_path=self.folder / "surface")
         with self.assertRaisesRegex(ValueError, "frames has no frame"):
             pliant.surface(RUN, self.folder / "other", frames=[])
 
