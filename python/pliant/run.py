@@ -53,6 +53,25 @@ class Run:
         return _pliant.read_observations(os.fspath(self.folder))
 
     @cached_property
+    def pose_covariance(self) -> NDArray[np.float64] | None:
+        """How certain the poses are: (P, 6, 6) float64, a pose of `poses` each, of the camera's center (world frame, map
+        units) and its rotation (rad, camera frame); of a refined run, else None. The first pose of a map is its world
+        and has zeros."""
+        file = self.folder / "pose_covariance.csv"
+        if not file.exists():
+            return None
+        try:
+            rows = np.loadtxt(file, delimiter=",", skiprows=1, ndmin=2)
+        except ValueError as error:
+            raise given.error("unreadable", f"{file} has a row that is not numbers alone: {error}") from None
+        row_idx, column_idx = np.triu_indices(6)
+        if rows.shape[1:] != (1 + len(row_idx),) or not np.array_equal(rows[:, 0], self.poses.frame_idx):
+            raise given.error("mismatch", f"{file} does not have a row of 22 numbers for every pose of trajectory.txt")
+        covariance = np.empty((len(rows), 6, 6))
+        covariance[:, row_idx, column_idx] = covariance[:, column_idx, row_idx] = rows[:, 1:]
+        return covariance
+
+    @cached_property
     def _map(self) -> tuple[_pliant.Camera | None, dict[int, str], Points]:
         try:
             return _pliant.read_map(os.fspath(self.folder))

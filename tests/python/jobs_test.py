@@ -35,6 +35,11 @@ class Jobs(TestCase):
         refined = pliant.refine(run, self.folder / "refined", on_progress=lambda *at: told.append(at))
         self.assertEqual(len(refined.poses), len(run.poses))
         self.assertTrue(np.all(refined.observations.sigma > 0))
+        covariance = refined.pose_covariance
+        self.assertEqual(covariance.shape, (len(run.poses), 6, 6))
+        np.testing.assert_array_equal(covariance, covariance.transpose(0, 2, 1))
+        self.assertTrue(np.all(np.linalg.eigvalsh(covariance[1:]) > 0))
+        self.assertIsNone(run.pose_covariance)
         self.assertEqual(told[-1][1], 1)
         with self.assertRaises(ValueError) as caught:
             pliant.refine(run, RUN)
