@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <opencv2/imgproc.hpp>
+
 #include "pipeline/working_frame.h"
 #include "pliant/base/statistics.h"
 #include "pliant/image/interlacing.h"
@@ -103,6 +105,46 @@ class Measurements {
   std::vector<std::pair<WorkingImage, std::vector<Trackability>>> measured_;
 };
 
+// Small, so that a codec's noise averages out.
+cv::Mat ThumbnailOf(const cv::Mat& image) {
+  constexpr int kSide_px = 64;
+  cv::Mat gray = image;
+  if (image.channels() == 3) cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+  cv::Mat small;
+  cv::resize(gray, small, {kSide_px, kSide_px}, 0, 0, cv::INTER_AREA);
+  return small;
+}
+
+// How many images there are before the first one that shows a view; 0 where the first ones do, or none does.
+int CountLeadIn(const SequenceRequest& request) {
+  constexpr int kShortest = 15;
+  constexpr int kLongest = 900;
+  constexpr double kDark = 12.0;   // gray levels: the brightest of a black image with noise
+  constexpr double kStill = 0.25;  // gray levels in the mean, from an image to the next
+  constexpr int kAmong = 8;        // images, of which
+  constexpr std::size_t kFew = 3;  // differ from the one before: others may be repeated, and a card may appear
+  if (request.IsLive()) return 0;
+  auto sequence = OpenSequence(request);
+  if (!sequence.ok()) return 0;
+  cv::Mat before;
+  std::vector<int> changes;
+  for (int k = 0; k < kLongest; ++k) {
+    const auto next = (*sequence)->Next();
+    if (!next.ok() || !next->has_value()) return 0;
+    const cv::Mat now = ThumbnailOf((*next)->image);
+    double brightest = 0;
+    cv::minMaxLoc(now, nullptr, &brightest);
+    if (brightest > kDark && !before.empty() &&
+        cv::norm(now, before, cv::NORM_L1) > kStill * static_cast<double>(now.total()))
+      changes.push_back(k);
+    before = now;
+    std::erase_if(changes, [&](int change) { return change <= k - kAmong; });
+    if (changes.size() < kFew) continue;
+    return changes.front() <= kShortest ? 0 : changes.front();
+  }
+  return 0;
+}
+
 // The first in which as many corners last as in the best, to the accuracy of a count; the first of all where none
 // tells.
 WorkingImage FirstAsGoodAsTheBest(const std::vector<WorkingImage>& candidates, Measurements* measurements) {
@@ -116,7 +158,9 @@ WorkingImage FirstAsGoodAsTheBest(const std::vector<WorkingImage>& candidates, M
 
 }  // namespace
 
-std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request) {
+std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& of_all) {
+  SequenceRequest request = of_all;
+  request.start += CountLeadIn(of_all) * request.stride;
   auto sequence = OpenSequence(request);
   if (!sequence.ok()) return {};
   std::vector<ImageRun> runs(kRuns);

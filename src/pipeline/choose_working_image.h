@@ -21,8 +21,10 @@ namespace pliant {
 // Images that follow each other.
 using ImageRun = std::vector<SequenceFrame>;
 
-// Three runs of 16 images, 60 apart, from the request's first on: what one of them shows may be an exception. Up to the
-// first image that cannot be read, and up to 400 MB; empty where there is none.
+// Three runs of 16 images, 60 apart, from the first on that shows a view: what one of them shows may be an exception. A
+// view changes from image to image; a title card stands still, and black is black. Where that lasts for half a second
+// (15 images), it is passed over; where it lasts for more than 900 images, or the source is live, it is not. Up to
+// the first image that cannot be read, and up to 400 MB; empty where there is none.
 std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request);
 
 // The source where `options` do not ask for a measurement, or the images do not tell: there are too few, or too few

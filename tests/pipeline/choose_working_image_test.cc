@@ -105,6 +105,36 @@ TEST_F(MovingTexture, VeryNoisyOnesTakeLargerPatches) {
   EXPECT_GT(Chosen().patch_scale, 1);
 }
 
+// Small images: so many black ones, so many of a card that stands still, and so many of a texture that moves.
+class LeadIn : public testing::Test {
+ protected:
+  int FirstLookedAt(int black, int card, int moving) const {
+    const auto camera = Camera::Create(CameraModelId::kSimplePinhole, 160, 120, std::array{120.0, 80.0, 60.0});
+    auto writer = NativeWriter::Create(folder_.Path("sequence"), {.camera = *camera, .fps = 25});
+    EXPECT_TRUE(writer.ok()) << writer.status().message();
+    cv::Mat texture(120, 160 + kStep_px * moving, CV_8UC3);
+    cv::RNG(7).fill(texture, cv::RNG::UNIFORM, 0, 255);
+    cv::GaussianBlur(texture, texture, {}, kBlob_px);
+    for (int k = 0; k < black + card + moving; ++k) {
+      cv::Mat image(120, 160, CV_8UC3, cv::Scalar::all(2));
+      if (k >= black) cv::rectangle(image, {40, 40, 80, 30}, cv::Scalar::all(200), cv::FILLED);
+      if (k >= black + card)
+        texture.colRange((k - black - card) * kStep_px, (k - black - card) * kStep_px + 160).copyTo(image);
+      EXPECT_TRUE(writer->Write({.timestamp_s = k / 25.0, .image = image}).ok());
+    }
+    SequenceRequest request;
+    request.image_path = folder_.Path("sequence");
+    const std::vector<ImageRun> runs = ReadFirstRuns(request);
+    return runs.empty() || runs.front().empty() ? -1 : runs.front().front().frame_idx;
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(LeadIn, BlackAndACardArePassedOver) { EXPECT_EQ(FirstLookedAt(20, 25, 12), 45); }
+TEST_F(LeadIn, AShortOneIsNot) { EXPECT_EQ(FirstLookedAt(6, 6, 12), 0); }
+TEST_F(LeadIn, WhereNothingElseFollowsItIsWhatThereIs) { EXPECT_EQ(FirstLookedAt(0, 40, 0), 0); }
+
 TEST(ChooseWorkingImage, LargeImagesAreMadeSmaller) {
   SequenceFrame frame;
   frame.image = cv::Mat(4000, 5000, CV_8U, cv::Scalar(7));
