@@ -197,6 +197,7 @@ int TrackCommand(std::span<const std::string> args) {
   RunRequest request;
   request.input = arguments.input.Request();
   request.output_path = arguments.output.path;
+  request.replaces_run = arguments.output.overwrite || arguments.resume;
   request.resume = arguments.resume;
   request.command_line = line.Words(args);
   request.stop = &StopOnSignals();

@@ -150,6 +150,10 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
                                     const RunWriterOptions& options) {
   auto lock = TakeFolder(output_path);
   if (!lock.ok()) return lock.status();
+  // Asked under the lock: another process may have come to its end since it was asked before.
+  if (!options.replaces_run && HoldsRun(output_path))
+    return Status(ErrorCode::kMismatch, "another process has made a run in " + Quoted(output_path) +
+                                            " meanwhile; give another --output_path, or --overwrite to replace it");
   auto former = FormerRun::SetAside(output_path);
   if (!former.ok()) return former.status();
   auto summary = WriteBeginning(output_path, std::move(description), config_yaml);

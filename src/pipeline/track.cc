@@ -291,6 +291,7 @@ Result<RunWriter> BeginWriting(const RunRequest& request, const TrackOptions& us
   listed.List(table);
   RunWriterOptions writer_options;
   writer_options.timings = options.timings;
+  writer_options.replaces_run = request.replaces_run;
   RunDescription description = DescriptionOf(request, usable, start);
   if (checkpoint->has_value())
     return RunWriter::Resume(request.output_path, camera, std::move(description), table.ToYaml(),

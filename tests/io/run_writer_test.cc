@@ -111,6 +111,20 @@ TEST(RunWriter, LeavesARunAloneThatIsBeingWritten) {
   EXPECT_TRUE(RunWriter::Create(folder.Path("run"), TestCamera(), {}, "", {kCosts, kStages}).ok());
 }
 
+// One that has ended since its user was asked.
+TEST(RunWriter, ReplacesNoRunWhereItMustNot) {
+  const TestFolder folder;
+  WriteRun(folder.Path("run"), 5);
+  const auto former = ContentOf(folder, "run");
+  const auto second =
+      RunWriter::Create(folder.Path("run"), TestCamera(), {}, "", {kCosts, kStages}, {.replaces_run = false});
+  EXPECT_EQ(second.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(second.status().message(), HasSubstr("another process has made a run in"));
+  EXPECT_EQ(ContentOf(folder, "run"), former);
+  EXPECT_TRUE(
+      RunWriter::Create(folder.Path("new"), TestCamera(), {}, "", {kCosts, kStages}, {.replaces_run = false}).ok());
+}
+
 TEST(RunWriter, GivesTheSameBytesTwiceWithoutTimings) {
   const TestFolder folder;
   for (const char* run : {"a", "b"}) WriteRun(folder.Path(run), 5, {.timings = RunTimings::kNone});

@@ -54,6 +54,7 @@ struct RunWriterOptions {
   RunTimings timings = RunTimings::kWritten;
   colmap::Format sparse_format = colmap::Format::kBoth;
   std::optional<double> total_s = std::nullopt;  // what the run took; nothing: the time from Create to Finish
+  bool replaces_run = true;                      // one with poses that is in the folder; false: Create fails there
 };
 
 // Whether the folder holds a run with poses; one that failed before it had any is nothing to keep.
@@ -64,7 +65,7 @@ class RunWriter {
   // Makes the folder (and those above it) and begins its files. A former run with poses is set aside, and deleted when
   // this one has a pose, or has come to its end without one; where it fails or is stopped before, or the writer goes
   // without Finish, the former run is restored. A folder that holds anything else, and no run, is refused.
-  // Fails with kInvalidArgument (a folder with other content) or kUnwritable.
+  // Fails with kInvalidArgument (a folder with other content), kMismatch (options.replaces_run) or kUnwritable.
   static Result<RunWriter> Create(const std::string& output_path, const Camera& camera, RunDescription description,
                                   const std::string& config_yaml, RunColumns columns,
                                   const RunWriterOptions& options = {});

@@ -108,6 +108,7 @@ struct RunRequest {
   std::vector<std::string> command_line;    // for run.json
   TrackerExtensions extensions = {};        // asked from the calling thread
   const std::atomic<bool>* stop = nullptr;  // becomes true when the run is to end after the present frame; may be null
+  bool replaces_run = true;  // one with poses that is in output_path; false: kMismatch, before the first frame
 };
 
 class TrackObserver {
