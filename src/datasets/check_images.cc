@@ -41,6 +41,11 @@ constexpr double kMinUnevenShare = 0.05;  // of the steps
 constexpr double kInvertedShare = 0.35;
 constexpr double kMinTakenShare = 0.2;  // of the pixels: less is a tool or an overlay, not the surroundings of a view
 
+// Masks that leave less than this part of the view, whose pixels are not darker than a part of its bright ones.
+constexpr double kMinLeftShare = 0.25;
+constexpr double kBrightQuantile = 0.95;
+constexpr double kDarkShare = 0.15;
+
 constexpr std::size_t kMaxSamples = 128;  // for overlays and masks, spread over all images
 
 std::string ShareText(int part, int all, const char* what) {
@@ -170,6 +175,36 @@ void JudgeMasks(const MaskSide& left, const MaskSide& taken, ImageCheck* check) 
                          ") and does; in a mask 0 is what is ignored, so invert them");
 }
 
+// Where any of the images is lit, 255; everywhere if none is. The rest is the dark surroundings of a round view.
+cv::Mat LitView(const std::vector<GridSample>& samples) {
+  cv::Mat brightest = samples.front().gray.clone();
+  for (const GridSample& sample : samples) brightest = cv::max(brightest, sample.gray);
+  std::vector<double> levels;
+  for (int y = 0; y < brightest.rows; ++y)
+    for (int x = 0; x < brightest.cols; ++x) levels.push_back(brightest.at<std::uint8_t>(y, x));
+  return brightest >= kDarkShare * Quantile(std::move(levels), kBrightQuantile);
+}
+
+void JudgeLeft(const std::vector<GridSample>& samples, ImageCheck* check) {
+  if (samples.empty()) return;
+  const cv::Mat view = LitView(samples);
+  double left = 0;
+  double all = 0;
+  bool has_masks = false;
+  for (const GridSample& sample : samples) {
+    has_masks = has_masks || !sample.valid.empty();
+    all += cv::countNonZero(view);
+    left += cv::countNonZero(sample.valid.empty() ? view : cv::Mat(view & (sample.valid != 0)));
+  }
+  if (!has_masks || all == 0) return;
+  check->left_share = left / all;
+  if (check->masks_are_inverted || *check->left_share >= kMinLeftShare) return;
+  check->has_masks = true;
+  check->wrong.push_back("the masks leave " + FormatNumber("%.0f", 100 * *check->left_share) +
+                         " % of the image: are they the wrong way round? in a mask 0 is what is ignored, and all else "
+                         "is used; invert masks in which tools are white");
+}
+
 void JudgeOverlay(ImageCheck* check) {
   if (!check->overlay) return;
   const PixelRectangle& found = *check->overlay;
@@ -250,6 +285,7 @@ ImageCheck ImageChecker::Check() const {
     check.damaged = (state_->last_idx - state_->first_idx) / state_->step_idx + 1 - state_->images;
   JudgeDamaged(&check);
   JudgeMasks(state_->left, state_->taken, &check);
+  JudgeLeft(state_->samples, &check);
   if (check.masks_are_inverted) return check;  // what they leave says nothing
   const OverlaySearch search = FindOverlay(state_->samples, state_->step);
   check.tells_overlays = search.tells;

@@ -211,6 +211,28 @@ TEST(ImageChecker, TellsMasksTheWrongWayRound) {
   EXPECT_THAT(Checked({.mask = tool}).wrong, IsEmpty());
 }
 
+TEST(ImageChecker, TellsMasksThatLeaveLittle) {
+  cv::Mat tool(kRows, kColumns, CV_8UC1, cv::Scalar(0));
+  tool(cv::Rect(100, 0, 32, kRows)) = 255;  // white, as in a segmentation
+  const ImageCheck white = Checked({.mask = tool});
+  EXPECT_NEAR(white.left_share.value_or(-1), 0.1, 0.01);
+  EXPECT_FALSE(white.masks_are_inverted);
+  EXPECT_THAT(white.wrong, ElementsAre(testing::AllOf(HasSubstr("the masks leave 10 % of the image"),
+                                                      HasSubstr("in a mask 0 is what is ignored"))));
+  EXPECT_THAT(Checked({.mask = ~tool}).wrong, IsEmpty());
+  const cv::Mat nothing(kRows, kColumns, CV_8UC1, cv::Scalar(0));
+  EXPECT_THAT(Checked({.mask = nothing}).wrong, ElementsAre(HasSubstr("the masks leave 0 % of the image")));
+  EXPECT_FALSE(Checked({}).left_share.has_value());
+}
+
+TEST(ImageChecker, CountsWhatMasksLeaveWithoutTheDarkSurroundings) {
+  cv::Mat view(kRows, kColumns, CV_8UC1, cv::Scalar(0));
+  cv::circle(view, {kColumns / 2, kRows / 2}, 65, 255, cv::FILLED);  // 17 % of the image, 35 % of the view
+  const ImageCheck check = Checked({.mask = view, .round_view = true});
+  EXPECT_NEAR(check.left_share.value_or(-1), 0.35, 0.03);
+  EXPECT_THAT(check.wrong, IsEmpty());
+}
+
 TEST(CheckedSequence, GivesWhatItsSourceGives) {
   class Source final : public Sequence {
    public:

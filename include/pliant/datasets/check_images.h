@@ -46,6 +46,8 @@ struct ImageCheck {
   bool masks_are_inverted = false;
   double left_level = 0;   // mean gray level of what the masks leave
   double taken_level = 0;  // and of what they take away
+  // Of the view, without dark surroundings, that the masks leave; nothing: there are none.
+  std::optional<double> left_share;
   // One sentence each: what is wrong, and what to do.
   std::vector<std::string> wrong;
 };
