@@ -11,13 +11,20 @@
 #include "datasets/image_file.h"
 #include "datasets/pair_streams.h"
 #include "pliant/base/options.h"
+#include "pliant/base/text.h"
 #include "pliant/camera/assumed_camera.h"
+#include "pliant/geometry/rigid3.h"
 #include "pliant/io/camera_file.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Calibrations that no endoscope has, degrees of the horizontal field of view.
+constexpr double kNarrowestFov_deg = 5;
+constexpr double kWidestPerspectiveFov_deg = 160;
+constexpr double kMaxFocalRatio = 1.3;  // of fx and fy
 
 // Nothing where the file is of one camera.
 Result<std::optional<StereoCalibration>> ReadPairCalibration(const fs::path& file) {
@@ -53,41 +60,27 @@ Result<DataSet> WithAssumedCamera(const SequenceRequest& request, const fs::path
   return data_set;
 }
 
-}  // namespace
-
-Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const fs::path& calibration_path, cv::Size image,
-                               PairLayout layout, EyeStreams eyes) {
-  const cv::Size eye = EyeSize(layout, image);
-  if (calibration.image_size && eye != cv::Size(calibration.image_size->width, calibration.image_size->height))
-    return Status(ErrorCode::kMismatch, "the calibration " + calibration_path.string() + " is for images of " +
-                                            SizeText(calibration.image_size->width, calibration.image_size->height) +
-                                            ", but those of one eye are " + SizeText(eye.width, eye.height) +
-                                            "; give the calibration of these images");
-  auto pair = RectifyPair(calibration, eye);
-  if (!pair.ok()) return Status(pair.status().code(), calibration_path.string() + ": " + pair.status().message());
-  DataSet data_set{.calibration = {pair->camera, calibration_path}, .images = nullptr};
-  data_set.calibration.baseline_mm = pair->baseline_mm;
-  if (calibration.was_in_meters)
-    data_set.warnings.push_back("the calibration " + calibration_path.string() + " has no unit and cameras less than " +
-                                FormatDouble(kShortestBaseline_mm) + " mm apart: it is read as meters, a baseline of " +
-                                FormatDouble(std::round(1000.0 * pair->baseline_mm) / 1000.0) + " mm");
-  if (eyes.left->fps()) data_set.calibration.fps = *eyes.left->fps();
-  data_set.inside = pair->left.Inside();
-  data_set.warp = pair->left;
-  data_set.raw_from_given = Rigid3(Eigen::Matrix3d(pair->rectified_from_left.transpose()), Eigen::Vector3d::Zero());
-  data_set.images = Warped(std::move(eyes.left), std::move(pair->left));
-  data_set.right = Warped(std::move(eyes.right), std::move(pair->right));
-  return data_set;
+void WarnOfFocalLength(const SourceCalibration& calibration, std::vector<std::string>* warnings) {
+  const Camera& camera = calibration.camera;
+  const double fx = camera.HorizontalFocalLengthPx();
+  const double fy = camera.Visit([](const auto& model) { return model.fy(); });
+  const bool is_fisheye = camera.model_id() == CameraModelId::kOpenCvFisheye;
+  const double half = 0.5 * camera.width() / fx;
+  const double fov_deg = 2.0 * kDegPerRad * (is_fisheye ? half : std::atan(half));
+  const std::string whose = "the calibration " + calibration.path.string() + " has ";
+  if (fov_deg < kNarrowestFov_deg || (!is_fisheye && fov_deg > kWidestPerspectiveFov_deg))
+    warnings->push_back(whose + "a focal length of " + FormatNumber("%.4g", fx) + " for images " +
+                        std::to_string(camera.width()) + " px wide, a horizontal field of view of " +
+                        FormatNumber("%.3g", fov_deg) +
+                        " degrees: is its focal length in millimeters? it is wanted in pixels");
+  if (fx > kMaxFocalRatio * fy || fy > kMaxFocalRatio * fx)
+    warnings->push_back(whose + "focal lengths that differ by more than 30 %, fx = " + FormatNumber("%.4g", fx) +
+                        " and fy = " + FormatNumber("%.4g", fy) +
+                        ": are they in pixels of these images, and in the right order?");
 }
 
-Result<DataSet> RectifiedHalves(const StereoCalibration& calibration, const fs::path& calibration_path,
-                                PairLayout layout, std::unique_ptr<ImageStream> images) {
-  const cv::Size image = images->SizeAt(0).value_or(cv::Size());
-  return RectifiedPairs(calibration, calibration_path, image, layout, SplitEyes(std::move(images), layout, image));
-}
-
-Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
-                           const std::optional<SourceCalibration>& published) {
+Result<DataSet> WithItsCalibration(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
+                                   const std::optional<SourceCalibration>& published) {
   const Result<fs::path> path = FindCalibration(request);
   std::optional<SourceCalibration> ready = path.ok() ? std::nullopt : published;
   if (path.ok() && path->extension() == ".xml") {
@@ -129,6 +122,46 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
   calibration.unit_mm = file->unit_mm;
   calibration.photometric = file->photometric;
   return DataSet{.calibration = std::move(calibration), .images = std::move(images), .mask_path = request.mask_path};
+}
+
+}  // namespace
+
+Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const fs::path& calibration_path, cv::Size image,
+                               PairLayout layout, EyeStreams eyes) {
+  const cv::Size eye = EyeSize(layout, image);
+  if (calibration.image_size && eye != cv::Size(calibration.image_size->width, calibration.image_size->height))
+    return Status(ErrorCode::kMismatch, "the calibration " + calibration_path.string() + " is for images of " +
+                                            SizeText(calibration.image_size->width, calibration.image_size->height) +
+                                            ", but those of one eye are " + SizeText(eye.width, eye.height) +
+                                            "; give the calibration of these images");
+  auto pair = RectifyPair(calibration, eye);
+  if (!pair.ok()) return Status(pair.status().code(), calibration_path.string() + ": " + pair.status().message());
+  DataSet data_set{.calibration = {pair->camera, calibration_path}, .images = nullptr};
+  data_set.calibration.baseline_mm = pair->baseline_mm;
+  if (calibration.was_in_meters)
+    data_set.warnings.push_back("the calibration " + calibration_path.string() + " has no unit and cameras less than " +
+                                FormatDouble(kShortestBaseline_mm) + " mm apart: it is read as meters, a baseline of " +
+                                FormatDouble(std::round(1000.0 * pair->baseline_mm) / 1000.0) + " mm");
+  if (eyes.left->fps()) data_set.calibration.fps = *eyes.left->fps();
+  data_set.inside = pair->left.Inside();
+  data_set.warp = pair->left;
+  data_set.raw_from_given = Rigid3(Eigen::Matrix3d(pair->rectified_from_left.transpose()), Eigen::Vector3d::Zero());
+  data_set.images = Warped(std::move(eyes.left), std::move(pair->left));
+  data_set.right = Warped(std::move(eyes.right), std::move(pair->right));
+  return data_set;
+}
+
+Result<DataSet> RectifiedHalves(const StereoCalibration& calibration, const fs::path& calibration_path,
+                                PairLayout layout, std::unique_ptr<ImageStream> images) {
+  const cv::Size image = images->SizeAt(0).value_or(cv::Size());
+  return RectifiedPairs(calibration, calibration_path, image, layout, SplitEyes(std::move(images), layout, image));
+}
+
+Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
+                           const std::optional<SourceCalibration>& published) {
+  auto data_set = WithItsCalibration(request, std::move(images), published);
+  if (data_set.ok()) WarnOfFocalLength(data_set->calibration, &data_set->warnings);
+  return data_set;
 }
 
 }  // namespace pliant

@@ -219,6 +219,22 @@ TEST_F(OpenSequenceTest, PairsMasksWithVideoFramesByNumber) {
   EXPECT_EQ(cv::countNonZero((*sequence->Next())->mask), kWidth * kHeight);
 }
 
+TEST_F(OpenSequenceTest, WarnsOfAFocalLengthThatIsNoneInPixels) {
+  WriteNative(2);
+  const auto warnings_of = [&](const std::string& model, const std::string& params) {
+    Text("camera.yaml", "model: " + model + "\nwidth: 64\nheight: 48\nparams: [" + params + "]\n");
+    const auto sequence = Open(Request());
+    return sequence ? sequence->Warnings() : std::vector<std::string>{"it does not open"};
+  };
+  EXPECT_THAT(warnings_of("PINHOLE", "4, 4, 31.5, 23.5"),
+              ElementsAre(testing::AllOf(HasSubstr("a horizontal field of view of 166 degrees"),
+                                         HasSubstr("is its focal length in millimeters? it is wanted in pixels"))));
+  EXPECT_THAT(warnings_of("PINHOLE", "800, 800, 31.5, 23.5"), ElementsAre(HasSubstr("in millimeters?")));
+  EXPECT_THAT(warnings_of("PINHOLE", "60, 80, 31.5, 23.5"), ElementsAre(HasSubstr("differ by more than 30 %")));
+  EXPECT_THAT(warnings_of("PINHOLE", "60, 70, 31.5, 23.5"), testing::IsEmpty());
+  EXPECT_THAT(warnings_of("OPENCV_FISHEYE", "21, 21, 31.5, 23.5, 0, 0, 0, 0"), testing::IsEmpty()) << "175 degrees";
+}
+
 TEST_F(OpenSequenceTest, PosesOfSomeImagesBelongToThoseOfTheirTimes) {
   WriteNative(3);
   Text("times.txt", "0.5\n0.75\n2\n");
