@@ -26,6 +26,7 @@ constexpr int kSoughtBefore = 4;  // frames: what is sought by its time is met a
 
 // Containers without an index estimate their number of frames from duration and rate.
 constexpr double kCountSlack = 0.01;  // of the count, and at least one frame
+constexpr double kMaxReordered = 16;  // frames: that may be coded after one that is shown later, H.264 and H.265
 constexpr double kMaxFps = 1000;      // rates from there on are the unit of the container's times
 constexpr int kMaxDamaged = 300;      // packets in a row: a decoder says no more of one than of the video's end
 
@@ -110,14 +111,17 @@ Status VideoStream::BreaksOff() const {
 }
 
 // By the number of frames, and by the time of the last one: at an uneven rate an estimate of the former is off.
-// One that begins between two frames that need no others shows nothing up to the second.
+// One that begins between two frames that need no others shows nothing up to the second. One that was cut without being
+// coded again ends in the order of coding: of the last frames it may lack some that are shown before others.
 bool VideoStream::EndsEarly() const {
   const double slack = std::max(CountsFrames(file_) ? 1.0 : kMaxDropped, kCountSlack * count_);
   const double by_time = fps_.value_or(0.0) * last_ms_ / 1e3 + 1.0;
   const double read = std::max(1.0 * read_, by_time);
   if (count_ - read <= slack) return false;
   const auto shown_s = ShownSeconds(file_);
-  return !shown_s || std::min<double>(count_, *shown_s * fps_.value_or(0.0)) - read > slack;
+  const double shown = shown_s ? *shown_s * fps_.value_or(0.0) : count_;
+  const bool is_cut = shown < count_ - slack;
+  return std::min<double>(count_, shown) - read > (is_cut ? std::max(slack, kMaxReordered) : slack);
 }
 
 bool VideoStream::Grab() {
