@@ -33,6 +33,25 @@ void WarnOfMissing(const std::string& what, const FrameRange& range, const DataS
                         ", the first is " + data_set.images->Name(first) + " (frame " + std::to_string(first) + ")");
 }
 
+// Data of 10, 12 or 14 bits in images of 16 bits that were not scaled look black. `range` is that of known images.
+void WarnOfUnscaledValues(const FrameRange& range, const ImageStream& images, std::vector<std::string>* warnings) {
+  constexpr int kLeast = 1 << 14;
+  constexpr int kCompared = 3;  // images: one may be dark
+  int largest = 0;
+  for (int k = 0; k < kCompared && range.Count() > 0; ++k) {
+    const int position = (range.Count() - 1) * k / (kCompared - 1);
+    const auto value = images.Largest16BitValue(range.start + position * range.stride);
+    if (!value || *value >= kLeast) return;
+    largest = std::max(largest, *value);
+  }
+  if (largest == 0) return;
+  int full = 255;  // of as many bits as are used
+  while (full < largest) full = 2 * full + 1;
+  warnings->push_back("the 16-bit images in " + images.path().string() + " use only values up to " +
+                      std::to_string(largest) + " of 65535, and are dark: if " + std::to_string(full) +
+                      " is full scale, scale them by " + std::to_string(65535 / full) + ", or write 8-bit images");
+}
+
 // What the range is of these images: of a video by its container's word.
 FrameRange ByItsWord(const FrameRange& range, const ImageStream& images) {
   if (images.count() == 0) return range;
@@ -347,7 +366,9 @@ Result<std::unique_ptr<Sequence>> ReadDataSet(DataSet data_set, const SequenceRe
     range = range->Within(data_set.images->count(), data_set.images->path());
   if (!range.ok()) return range.status();
   if (Status status = CheckStart(*range, data_set.images.get()); !status.ok()) return status;
-  WarnOfMissingTruth(ByItsWord(*range, *data_set.images), &data_set);
+  const FrameRange known = ByItsWord(*range, *data_set.images);
+  WarnOfMissingTruth(known, &data_set);
+  WarnOfUnscaledValues(known, *data_set.images, &data_set.warnings);
   auto sequence = std::make_unique<DataSetSequence>(std::move(data_set), *range);
   if (Status status = sequence->CheckFirstImage(); !status.ok()) return status;
   if (Status status = sequence->OpenMasks(); !status.ok()) return status;

@@ -3,7 +3,10 @@
 
 #include "datasets/image_stream.h"
 
+#include <algorithm>
 #include <utility>
+
+#include <opencv2/core.hpp>
 
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
@@ -34,6 +37,21 @@ class FileStream final : public ImageStream {
     if (idx >= count()) return std::optional<cv::Size>();
     const Result<cv::Size> size = SizeOfImageFile(At(idx));
     return size.ok() ? Result(std::optional(*size)) : size.status();
+  }
+
+  std::optional<int> Largest16BitValue(int idx) const override {
+    if (idx >= count()) return std::nullopt;
+    const Result<cv::Mat> image = ReadStoredImage(At(idx));
+    if (!image.ok() || image->depth() != CV_16U) return std::nullopt;
+    double largest = 0;
+    for (int k = 0; k < std::min(image->channels(), 3); ++k) {  // without alpha
+      cv::Mat channel;
+      double of_channel = 0;
+      cv::extractChannel(*image, channel, k);
+      cv::minMaxLoc(channel, nullptr, &of_channel);
+      largest = std::max(largest, of_channel);
+    }
+    return static_cast<int>(largest);
   }
 
   Result<std::optional<cv::Mat>> Read(int idx) override {

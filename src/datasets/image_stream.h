@@ -40,6 +40,9 @@ class ImageStream {
   // where the file is cut off or no image; it is decoded only where its head and end do not tell.
   virtual Result<std::optional<cv::Size>> StoredSize(int /*idx*/) const { return std::optional<cv::Size>(); }
 
+  // The largest value in the file of image `idx`, if its values have 16 bits; nothing else, or where it cannot be read.
+  virtual std::optional<int> Largest16BitValue(int /*idx*/) const { return std::nullopt; }
+
   // 8-bit, gray or BGR; nothing beyond the end. `idx` may not be smaller than the time before. Fails with kNotFound or
   // kUnreadable; a list of files can be read on after that, a video that breaks off ends.
   virtual Result<std::optional<cv::Mat>> Read(int idx) = 0;

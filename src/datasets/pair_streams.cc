@@ -29,6 +29,7 @@ class DerivedStream : public ImageStream {
   std::string Name(int idx) const override { return source_->Name(idx); }
   std::string Title(int idx) const override { return source_->Title(idx); }
   Result<std::optional<cv::Size>> StoredSize(int idx) const override { return source_->StoredSize(idx); }
+  std::optional<int> Largest16BitValue(int idx) const override { return source_->Largest16BitValue(idx); }
   bool IsDamaged(int idx) const override { return source_->IsDamaged(idx); }
   std::optional<double> RecordedS() const override { return source_->RecordedS(); }
 

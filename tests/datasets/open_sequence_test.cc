@@ -219,6 +219,21 @@ TEST_F(OpenSequenceTest, PairsMasksWithVideoFramesByNumber) {
   EXPECT_EQ(cv::countNonZero((*sequence->Next())->mask), kWidth * kHeight);
 }
 
+TEST_F(OpenSequenceTest, WarnsOf16BitImagesThatUseFewOfTheirValues) {
+  WriteCamera();
+  const auto warnings_of = [&](int level, int type) {
+    for (int idx = 0; idx < 4; ++idx)
+      Write("images/" + Name(idx), cv::Mat(kHeight, kWidth, type, cv::Scalar(level - idx, level, level, 65535)));
+    const auto sequence = Open(Request());
+    return sequence ? sequence->Warnings() : std::vector<std::string>{"it does not open"};
+  };
+  for (const int type : {CV_16UC1, CV_16UC3, CV_16UC4})
+    EXPECT_THAT(warnings_of(4080, type), ElementsAre(HasSubstr("use only values up to 4080 of 65535"))) << type;
+  EXPECT_THAT(warnings_of(1020, CV_16UC3), ElementsAre(HasSubstr("if 1023 is full scale, scale them by 64")));
+  EXPECT_THAT(warnings_of(40000, CV_16UC3), testing::IsEmpty());
+  EXPECT_THAT(warnings_of(200, CV_8UC3), testing::IsEmpty());
+}
+
 TEST_F(OpenSequenceTest, WarnsOfAFocalLengthThatIsNoneInPixels) {
   WriteNative(2);
   const auto warnings_of = [&](const std::string& model, const std::string& params) {
