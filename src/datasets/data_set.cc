@@ -131,12 +131,15 @@ class DataSetSequence final : public Sequence {
 Status DataSetSequence::CheckFirstImage() const {
   const std::optional<cv::Size> size = images().SizeAt(range_.start);
   if (!size || *size == cv::Size(camera().width(), camera().height())) return Status::Ok();
+  const bool turned = size->width == camera().height() && size->height == camera().width();
+  const std::string turn = images().count_is_exact() ? "; the EXIF orientation of images is ignored"
+                                                     : "; the rotation in the metadata of a video is applied";
   const bool twice = (size->width == 2 * camera().width()) != (size->height == 2 * camera().height());
-  return {ErrorCode::kMismatch, "the calibration " + data_set_.calibration.path.string() + " is for images of " +
-                                    SizeText(camera().width(), camera().height()) + ", but " +
-                                    images().Title(range_.start) + " is " + SizeText(size->width, size->height) +
-                                    "; give the calibration of these images" +
-                                    (twice ? ", or of both cameras where an image holds a pair" : "")};
+  return {ErrorCode::kMismatch,
+          "the calibration " + data_set_.calibration.path.string() + " is for images of " +
+              SizeText(camera().width(), camera().height()) + ", but " + images().Title(range_.start) + " is " +
+              SizeText(size->width, size->height) + "; give the calibration of these images" +
+              (twice ? ", or of both cameras where an image holds a pair" : "") + (turned ? turn : "")};
 }
 
 // A video may end before its container says so: there only a gap before a frame that has a mask is one for certain.

@@ -234,6 +234,18 @@ TEST_F(OpenSequenceTest, WarnsOf16BitImagesThatUseFewOfTheirValues) {
   EXPECT_THAT(warnings_of(200, CV_8UC3), testing::IsEmpty());
 }
 
+TEST_F(OpenSequenceTest, SaysThatSidesAreExchangedWhereACalibrationIsOfTurnedImages) {
+  WriteVideo("clip.avi", 2);
+  WriteCamera("camera.yaml", kHeight, kWidth);
+  ExpectRefused(Request("clip.avi"), ErrorCode::kMismatch, "the rotation in the metadata of a video is applied");
+  WriteImages(2, "f");
+  SequenceRequest folder = Request("f");
+  folder.camera_path = Path("camera.yaml");
+  ExpectRefused(folder, ErrorCode::kMismatch, "the EXIF orientation of images is ignored");
+  WriteCamera("camera.yaml", kWidth + 8, kHeight);
+  EXPECT_THAT(OpenSequence(Request("clip.avi")).status().message(), testing::Not(HasSubstr("rotation")));
+}
+
 TEST_F(OpenSequenceTest, WarnsOfAFocalLengthThatIsNoneInPixels) {
   WriteNative(2);
   const auto warnings_of = [&](const std::string& model, const std::string& params) {
