@@ -98,7 +98,7 @@ Result<pliant::Camera> ReadCamera(const std::string& path, std::optional<int> ca
   return Status(ErrorCode::kInvalidArgument,
                 camera_id ? Quoted(path) + " has no camera " + std::to_string(*camera_id) + ", but " + ids
                           : Quoted(path) + " holds " + std::to_string(cameras->size()) + " cameras (" + ids +
-                                "); choose one by its id, or leave one in the file");
+                                "); leave the one of these images in the file");
 }
 
 }  // namespace pliant::colmap

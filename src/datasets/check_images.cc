@@ -131,7 +131,8 @@ void JudgeRepeated(const std::vector<Change>& changes, ImageCheck* check) {
       " repeat the one before: the video was converted to a higher rate, or images were lost in recording, and points "
       "seem to stop and then jump; " +
       (every_nth ? "give --stride " + std::to_string(period) + ", or convert the original at its own rate"
-                 : "leave them out (ffmpeg -i VIDEO -vf mpdecimate -fps_mode passthrough images/%06d.png), or convert "
+                 : "leave them out (mkdir -p images && ffmpeg -i VIDEO -vf mpdecimate -fps_mode passthrough "
+                   "images/%06d.png), or convert "
                    "the original at its own rate; a --stride may help"));
 }
 

@@ -55,6 +55,12 @@ std::string CannotBeDecoded(const std::string& source) {
   return "the stream " + Quoted(source) + " cannot be opened; check its address, and that it is being sent";
 }
 
+// Of standard input.
+Status SentNothing(double timeout_s) {
+  return {ErrorCode::kUnreadable, "standard input has sent no image for " + Digits(timeout_s, 0) +
+                                      " s; check it, or wait longer with LiveInput.timeout_s"};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<FrameGrabber>> FrameGrabber::Open(const std::string& source, double timeout_s,
@@ -74,6 +80,8 @@ Result<std::unique_ptr<FrameGrabber>> FrameGrabber::Open(const std::string& sour
     opened = Status(ErrorCode::kUnreadable, CannotBeDecoded(source));
   }
   if (is_stopped()) return Status(ErrorCode::kInterrupted, "stopped on request before the first image");
+  if (!opened.ok() && grabber->standard_input_ && grabber->standard_input_->has_stalled())
+    return SentNothing(timeout_s);
   if (!opened.ok()) return opened;
   const cv::Size size(static_cast<int>(grabber->capture_.get(cv::CAP_PROP_FRAME_WIDTH)),
                       static_cast<int>(grabber->capture_.get(cv::CAP_PROP_FRAME_HEIGHT)));

@@ -118,7 +118,7 @@ TEST(ImageChecker, FindsRepeatedImagesAndTheStrideThatLeavesThemOut) {
   converted.burn = [](cv::Mat* image) { image->at<std::uint8_t>(image->at<std::uint8_t>(0, 0) % kRows, 7) ^= 3; };
   const ImageCheck sixth = Checked(converted);
   EXPECT_EQ(sixth.repeated, kFrames / 6);
-  EXPECT_THAT(sixth.wrong, ElementsAre(HasSubstr("mpdecimate")));
+  EXPECT_THAT(sixth.wrong, ElementsAre(HasSubstr("mkdir -p images && ffmpeg -i VIDEO -vf mpdecimate")));
   Recording dropped;  // one or two lost images are nothing to speak of
   for (int k = 0; k < kFrames; ++k) dropped.shown.push_back(k == 20 || k == 40 ? k - 1 : k);
   EXPECT_EQ(Checked(dropped).repeated, 2);

@@ -186,6 +186,14 @@ TEST_F(LiveSourceTest, ASourceThatStallsFailsAndOneThatIsStoppedEnds) {
   EXPECT_FALSE((*source)->Read(3)->has_value());
 }
 
+TEST_F(LiveSourceTest, SaysThatAPipeHasSentNothing) {
+  request_.options.timeout_s = 0.5;
+  const auto source = LiveSource::Open(request_);
+  EXPECT_EQ(source.status().code(), ErrorCode::kUnreadable);
+  EXPECT_THAT(source.status().message(), HasSubstr("standard input has sent no image for"));
+  EXPECT_FALSE(std::filesystem::exists(Path("recording")));
+}
+
 TEST_F(LiveSourceTest, IsStoppedWhileItWaits) {
   std::atomic<bool> stop = false;
   request_.stop = &stop;

@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "camera 1: the PINHOLE camera has a parameter that is not a finite number: number 3"},
         BadFile{"ColmapModel", "cameras.txt", "1 FOV 64 48 1 2 3 4 5\n", "camera model FOV is not one of Pliant's"},
         BadFile{"ColmapSeveral", "cameras.txt", "3 PINHOLE 64 48 50 50 32 24\n7 PINHOLE 64 48 50 50 32 24\n",
-                "2 cameras (3, 7); choose one by its id"},
+                "2 cameras (3, 7); leave the one of these images"},
         BadFile{"ColmapTruncated", "cameras.bin", std::string("\1\0\0\0\0\0\0\0\1\0\0\0", 12),
                 "it says that there are 1 cameras, but has only 4"},
         BadFile{"OpenCvThin", "k.yaml", kMatrix + "D: [0.1, 0, 0, 0, 0, 0, 0, 0, 0.01, 0, 0, 0]\n",
