@@ -33,6 +33,11 @@ std::string OfFrames(const RunSummary& summary) {
   return text + ".";
 }
 
+// Some methods measure no spread.
+bool HasMeasuredDepth(const FirstMapEvidence& evidence) {
+  return evidence.depth_sigma > 0.0 && evidence.depth_spread > 0.0;
+}
+
 bool IsDepthKnown(const FirstMapEvidence& evidence) {
   return DepthSignal(evidence.depth_spread, evidence.depth_sigma) >= kMinDepthSignal;
 }
@@ -71,7 +76,7 @@ std::string OfMaps(const RunSummary& summary, Sentence sentence) {
 }
 
 std::string OfDepth(const FirstMapEvidence& evidence) {
-  if (!(evidence.depth_sigma > 0.0) || !(evidence.depth_spread > 0.0)) return {};
+  if (!HasMeasuredDepth(evidence)) return {};
   const std::string numbers = "the first map's depths spread by " + Percent(evidence.depth_spread, 1) +
                               " and are known to " + Percent(evidence.depth_sigma, 1) + " (" +
                               std::to_string(evidence.points) + " points, parallax " +
@@ -197,6 +202,21 @@ std::string OfCoverage(const RunSummary& summary) {
   return text + ".";
 }
 
+// By the map that has the most parallax of those whose depths are hardly known.
+std::string AdviceOnDepth(const RunSummary& summary) {
+  if (IsRefined(summary)) return {};
+  double parallax_deg = -1.0;
+  for (const FirstMapFrames& map : summary.first_maps)
+    if (HasMeasuredDepth(map.evidence) && !IsDepthKnown(map.evidence))
+      parallax_deg = std::max(parallax_deg, map.evidence.median_parallax_deg);
+  if (parallax_deg < 0.0) return {};
+  return (parallax_deg < kEnoughParallaxDeg
+              ? std::string("Depth needs more parallax: move the camera sideways, and further by the distance of the "
+                            "tissue.")
+              : Capitalized(AdviceOnUncertainDepth(parallax_deg)) + ".") +
+         " Compare a run begun at another frame: pliant evaluate tells how far they agree.";
+}
+
 std::string Advice(const RunSummary& summary) {
   std::vector<std::string> advice;
   const auto count = [&](auto test) {
@@ -207,10 +227,7 @@ std::string Advice(const RunSummary& summary) {
         "If the camera does stand still, start from depth (--Init.method depth --Tracking.camera_motion none), or from "
         "a network's (--depth_prior DIR --Init.method depth_prior --Tracking.camera_motion none); if it moves, move it "
         "further and not evenly.");
-  if (!IsRefined(summary) && count([](const FirstMapEvidence& e) { return e.depth_sigma > 0.0 && !IsDepthKnown(e); }))
-    advice.emplace_back(
-        "Depth needs more parallax: move the camera sideways, and further by the distance of the "
-        "tissue. Compare a run begun at another frame: pliant evaluate tells how far they agree.");
+  advice.push_back(AdviceOnDepth(summary));
   if (!HasEstimatedCamera(summary) && count([](const FirstMapEvidence& e) { return e.focal_length_factor != 1.0; }))
     advice.emplace_back("Calibrate the camera, or check that the calibration is of this lens, zoom and image size.");
   else if (IsAssumedCamera(summary.description.camera))

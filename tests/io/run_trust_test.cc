@@ -108,6 +108,7 @@ TEST(RunTrust, SaysThatDepthsAloneShowThatTheCameraMoves) {
 TEST(RunTrust, DepthsThatAreHardlyBetterThanOneAreNoneToTrust) {
   FirstMapEvidence flat = kKnown;
   flat.depth_spread = 0.02;
+  flat.median_parallax_deg = 1;
   flat.provisional = true;
   RunSummary summary = Summary(flat);
   summary.states = {{TrackingState::kProvisional, 90}, {TrackingState::kInitializing, 10}};
@@ -115,6 +116,22 @@ TEST(RunTrust, DepthsThatAreHardlyBetterThanOneAreNoneToTrust) {
   EXPECT_THAT(trust.at("frames"), HasSubstr("in 90 of them it is provisional"));
   EXPECT_THAT(trust.at("depth"), HasSubstr("hardly better than one constant depth"));
   EXPECT_THAT(trust.at("advice"), HasSubstr("more parallax"));
+}
+
+TEST(RunTrust, WhereParallaxIsThereOtherCausesAreNamed) {
+  FirstMapEvidence flat = kKnown;
+  flat.depth_spread = 0.02;
+  flat.median_parallax_deg = 25;
+  const std::string advice = Trust(Summary(flat)).at("advice");
+  EXPECT_THAT(advice, Not(HasSubstr("sideways")));
+  EXPECT_THAT(advice, HasSubstr("Parallax is not what is missing: check the calibration, mask"));
+}
+
+TEST(RunTrust, AMapWhoseSpreadWasNotMeasuredIsNotJudgedByIt) {
+  FirstMapEvidence gated = kKnown;
+  gated.deforming = false;
+  gated.depth_spread = gated.still_camera_error_ratio = 0;
+  EXPECT_THAT(Trust(Summary(gated)), Not(Contains(Key("advice"))));
 }
 
 TEST(RunTrust, SaysThatTheCalibrationIsContradicted) {

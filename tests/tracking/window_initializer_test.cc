@@ -12,6 +12,7 @@
 
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
+#include "pliant/scene/frame_report.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "support/tolerances.h"
 #include "support/waving_tracks.h"
@@ -117,6 +118,17 @@ TEST(WindowInitializer, MakesNoMapOnWhichTheSamplesDoNotAgree) {
   const InitOutcome last = sequence.Try(options, InitMoment::kLastFrame);
   EXPECT_EQ(last.decision, InitDecision::kNewReference);
   EXPECT_THAT(last.reason, HasSubstr("points is known to 0.1 % of the median depth"));
+  const std::string before = "the median parallax is ";
+  const std::size_t at = last.reason.find(before);
+  ASSERT_NE(at, std::string::npos) << last.reason;
+  EXPECT_THAT(last.reason,
+              HasSubstr("deg: " + AdviceOnUncertainDepth(std::stod(last.reason.substr(at + before.size())))));
+}
+
+TEST(WindowInitializer, AdvisesMoreMotionWhereParallaxIsSmallAlone) {
+  EXPECT_THAT(AdviceOnUncertainDepth(1), HasSubstr("sideways"));
+  EXPECT_THAT(AdviceOnUncertainDepth(25), Not(HasSubstr("sideways")));
+  EXPECT_THAT(AdviceOnUncertainDepth(25), HasSubstr("check the calibration"));
 }
 
 TEST(WindowInitializer, ASequenceThatEndsEarlyMustBeAsCertain) {

@@ -87,6 +87,10 @@ inline double DepthSignal(double spread, double sigma) { return sigma > 0 ? spre
 inline constexpr double kMinDepthSignal = 3.0;
 // The same for a map that is provisional.
 inline constexpr double kMinProvisionalSignal = 2.0;
+// Median parallax from which depths that are not known do not lack motion of the camera.
+inline constexpr double kEnoughParallaxDeg = 3.0;
+// What to do about depths that are not certain with that parallax: a part of a sentence.
+std::string AdviceOnUncertainDepth(double median_parallax_deg);
 
 // What a first map rests on, as it was measured when it was made; 0 where its method does not measure it.
 struct FirstMapEvidence {

@@ -9,6 +9,7 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
+#include "pliant/scene/frame_report.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "tracking/bootstrapping/focal_length_check.h"
 #include "tracking/bootstrapping/initial_map.h"
@@ -113,8 +114,8 @@ class WindowInitializer final : public Initializer {
     const std::string why = contradicts ? "a rigid motion does not explain the images with this focal length"
                                         : "camera and scene could not be told apart before this reference";
     if (outcome->provisional)
-      return {ErrorCode::kDegenerate,
-              "the depths are not as certain as demanded, and " + why + "; move the camera sideways or forwards"};
+      return {ErrorCode::kDegenerate, "the depths are not as certain as demanded, and " + why + "; " +
+                                          AdviceOnUncertainDepth(outcome->measured.median_parallax_deg)};
     if (!contradicts) return Status::Ok();
     if (options_.provisional == Switch::kOff) return {ErrorCode::kInsufficient, why};
     outcome->provisional = true;

@@ -139,7 +139,7 @@ Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const M
                                         " points is known to " + Digits(100.0 * demands.certain_sigma, 1) +
                                         " % of the median depth, at least " + needed +
                                         " must be; the median parallax is " + Digits(median_parallax_deg, 1) +
-                                        " deg: give more frames, or move the camera sideways or forwards"};
+                                        " deg: " + AdviceOnUncertainDepth(median_parallax_deg)};
 }
 
 // The points in all frames of the input, fixed; poses and coefficients start between those of the solved views.
@@ -216,12 +216,13 @@ Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, c
             "the depths hardly stand out, and a rigid motion does not explain all: the errors of neighbors have a "
             "correlation of " +
                 Digits(window.solution.residual_correlation, 2) +
-                ", the scene may deform before a camera that stands still; move the camera sideways or forwards"};
+                ", the scene may deform before a camera that stands still; " +
+                AdviceOnUncertainDepth(measured.median_parallax_deg)};
   if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
   return {stands_out ? ErrorCode::kInsufficient : ErrorCode::kDegenerate,
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and are known to " +
-              Digits(100.0 * measured.median_depth_sigma, 1) +
-              " %: hardly better than one constant depth; move the camera sideways or forwards"};
+              Digits(100.0 * measured.median_depth_sigma, 1) + " %: hardly better than one constant depth; " +
+              AdviceOnUncertainDepth(measured.median_parallax_deg)};
 }
 
 // (W21) Linear sigmas of a deforming window know of one minimum alone. Where those of a part of its frames say that
@@ -237,7 +238,7 @@ Status CheckLaterPart(const InitInput& input, const SolvedWindow& window, const 
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and seem known to " +
               Digits(100.0 * measured.median_depth_sigma, 1) +
               " %, but by the later two thirds of the frames that is too little by a factor of " +
-              Digits(measured.sigma_factor, 1) + "; give more frames, or move the camera sideways or forwards"};
+              Digits(measured.sigma_factor, 1) + "; " + AdviceOnUncertainDepth(measured.median_parallax_deg)};
 }
 
 // The points not in the map, each with why.
