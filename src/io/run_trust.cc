@@ -83,7 +83,7 @@ std::string OfDepth(const FirstMapEvidence& evidence) {
                               Digits(evidence.median_parallax_deg, 1) + " deg): ";
   if (!IsDepthKnown(evidence)) return numbers + "they are hardly better than one constant depth.";
   return numbers + (evidence.provisional ? "the shape is there, but not as certain as demanded."
-                                         : "the shape can be trusted to about that.");
+                                         : "the shape can be trusted to about that, if the calibration is right.");
 }
 
 // A certain map becomes provisional where its scene, which was taken for rigid, is found to deform (W13).
@@ -104,7 +104,8 @@ std::string OfRefinedDepth(const RunSummary& summary) {
   if (!refinement || !(refinement->depth_sigma > 0.0)) return {};
   return "All frames were solved for at once: points' distances from the camera are known to " +
          Percent(refinement->depth_sigma, 1) +
-         " in the median (standard deviation), as far as the scene moves as it was taken to.";
+         " in the median (standard deviation), as far as the scene moves as it was taken to" +
+         (HasEstimatedCamera(summary) ? "." : ", and if the calibration is right.");
 }
 
 std::string OfModel(RefinedModel model) {

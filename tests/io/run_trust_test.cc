@@ -43,7 +43,7 @@ TEST(RunTrust, SaysWhatAGoodRunHas) {
   const auto trust = Trust(Summary(kKnown));
   EXPECT_THAT(trust.at("frames"), HasSubstr("90 of 100 frames have a map (90 %)"));
   EXPECT_THAT(trust.at("depth"), HasSubstr("spread by 20.0 % and are known to 1.0 % (200 points, parallax 8.0 deg)"));
-  EXPECT_THAT(trust.at("depth"), HasSubstr("can be trusted"));
+  EXPECT_THAT(trust.at("depth"), HasSubstr("can be trusted to about that, if the calibration is right."));
   EXPECT_THAT(trust.at("camera"), HasSubstr("1.80 times as large"));
   EXPECT_THAT(trust.at("tracks"), HasSubstr("0.21 px"));
   EXPECT_THAT(trust.at("coverage"), HasSubstr("80 %"));
@@ -60,6 +60,7 @@ TEST(RunTrust, OfARefinedRunSaysNothingOfTheFirstMap) {
   const auto trust = Trust(summary);
   for (const auto& [topic, sentences] : trust) EXPECT_THAT(sentences, Not(HasSubstr("irst map"))) << topic;
   EXPECT_THAT(trust.at("depth"), HasSubstr("points' distances from the camera are known to 0.8 % in the median"));
+  EXPECT_THAT(trust.at("depth"), HasSubstr("if the calibration is right"));
   EXPECT_THAT(trust.at("camera"), HasSubstr("The scene was taken for rigid"));
   EXPECT_THAT(trust.at("tracks"), HasSubstr("0.21 px"));
   EXPECT_THAT(trust.at("calibration"), HasSubstr("contradict")) << "the calibration is the run's";
@@ -69,6 +70,7 @@ TEST(RunTrust, OfARefinedRunSaysNothingOfTheFirstMap) {
   const auto of_two = Trust(summary);
   EXPECT_THAT(of_two.at("camera"), HasSubstr("Submap 0: the scene was taken for deforming"));
   EXPECT_THAT(of_two.at("camera"), HasSubstr("Submap 1: it could not be refined"));
+  EXPECT_THAT(of_two.at("depth"), Not(HasSubstr("calibration")));
   EXPECT_THAT(of_two.at("calibration"), Not(HasSubstr("contradict")));
   EXPECT_THAT(of_two, Not(Contains(Key("advice"))));
 
