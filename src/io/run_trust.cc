@@ -185,12 +185,23 @@ std::string OfImages(const RunDescription& run) {
          Percent(run.alive_after_9, 0) + " of the corners last nine frames.";
 }
 
+// Whether points have displacements of their own in every frame.
+bool HasDisplacements(const RunSummary& summary) {
+  if (const auto& refinement = summary.description.refinement)
+    return std::ranges::find(refinement->models, RefinedModel::kDeforming) != refinement->models.end();
+  return FramesIn(summary, TrackingState::kProvisional) > 0 ||
+         std::ranges::any_of(summary.first_maps, [](const FirstMapFrames& map) { return map.evidence.deforming; });
+}
+
 std::string OfTracks(const RunSummary& summary) {
   // Points of a map that deforms are nearly where the images have them: two decimals would say 0.00.
   const double error_px = summary.median_reprojection_error_px;
   return "Points lie " + (error_px < 0.01 ? "less than 0.01" : Digits(error_px, 2)) +
-         " px from where the map has them, in the median (pixels of the source). Points were tracked in images of " +
-         Digits(summary.description.image_scale, 2) + " times the source's size.";
+         " px from where the map has them, in the median (pixels of the source)" +
+         (HasDisplacements(summary)
+              ? "; their displacements take up the error, so that it does not say whether they are right. "
+              : ". ") +
+         "Points were tracked in images of " + Digits(summary.description.image_scale, 2) + " times the source's size.";
 }
 
 std::string OfCoverage(const RunSummary& summary) {

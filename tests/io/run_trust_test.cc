@@ -85,6 +85,19 @@ TEST(RunTrust, SaysNoErrorThatIsZero) {
   EXPECT_THAT(Trust(summary).at("tracks"), HasSubstr("Points lie less than 0.01 px"));
 }
 
+TEST(RunTrust, TheErrorOfPointsThatMoveByThemselvesDoesNotSayThatTheyAreRight) {
+  const auto says_so = HasSubstr("their displacements take up the error");
+  EXPECT_THAT(Trust(Summary(kKnown)).at("tracks"), says_so);
+  FirstMapEvidence rigid = kKnown;
+  rigid.deforming = false;
+  RunSummary summary = Summary(rigid);
+  EXPECT_THAT(Trust(summary).at("tracks"), Not(says_so));
+  summary.states = {{TrackingState::kProvisional, 90}, {TrackingState::kInitializing, 10}};
+  EXPECT_THAT(Trust(summary).at("tracks"), says_so);
+  summary.description.refinement = RunRefinement{{RefinedModel::kRigid}, 0.008};
+  EXPECT_THAT(Trust(summary).at("tracks"), Not(says_so));
+}
+
 TEST(RunTrust, TellsWhetherTextureOrDepthIsMissing) {
   RunSummary summary = Summary(kKnown);
   summary.median_coverage = 0.3;
