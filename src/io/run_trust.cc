@@ -30,6 +30,7 @@ std::string OfFrames(const RunSummary& summary) {
   add(TrackingState::kProvisional, "of them it is provisional");
   add(TrackingState::kAmbiguous, "camera and scene cannot be told apart");
   add(TrackingState::kLost, "it was lost");
+  add(TrackingState::kWaitingForReference, "the image showed too little to start from");
   return text + ".";
 }
 
@@ -180,9 +181,13 @@ std::string OfAssumedCamera(const RunDescription& run) {
 
 std::string OfImages(const RunDescription& run) {
   if (!(run.track_noise_px > 0.0)) return {};
-  return "The first images have a noise of " + Digits(run.image_noise_levels, 1) +
-         " gray levels; points are tracked in them to " + Digits(run.track_noise_px, 2) + " px (working image), and " +
-         Percent(run.alive_after_9, 0) + " of the corners last nine frames.";
+  // None is seen in images that are black.
+  const std::string noise = Digits(run.image_noise_levels, 1);
+  return (noise == "0.0"
+              ? "In the first images points are tracked to "
+              : "The first images have a noise of " + noise + " gray levels; points are tracked in them to ") +
+         Digits(run.track_noise_px, 2) + " px (working image), and " + Percent(run.alive_after_9, 0) +
+         " of the corners last nine frames.";
 }
 
 // Whether points have displacements of their own in every frame.
@@ -252,7 +257,8 @@ std::string Advice(const RunSummary& summary) {
     advice.emplace_back(summary.median_followed_coverage < kMinCoverage
                             ? "Much of the scene has no point: raise --Corners.max_corners, or check the mask."
                             : "Much of the scene has points whose depth is not certain: move the camera sideways.");
-  if (static_cast<double>(summary.frames_tracked) < kMinFrameShare * static_cast<double>(summary.frames_read) &&
+  const std::int64_t explained = summary.frames_tracked + FramesIn(summary, TrackingState::kWaitingForReference);
+  if (static_cast<double>(explained) < kMinFrameShare * static_cast<double>(summary.frames_read) &&
       FramesIn(summary, TrackingState::kAmbiguous) == 0)
     advice.emplace_back("Where there is no map, the camera moved too little or the points lasted too briefly.");
   return Joined(advice);

@@ -98,6 +98,16 @@ TEST(RunTrust, TheErrorOfPointsThatMoveByThemselvesDoesNotSayThatTheyAreRight) {
   EXPECT_THAT(Trust(summary).at("tracks"), Not(says_so));
 }
 
+TEST(RunTrust, ImagesThatShowTooLittleAreNoLackOfMotion) {
+  RunSummary summary = Summary(kKnown);
+  summary.frames_tracked = 60;
+  summary.states = {{TrackingState::kTracking, 60}, {TrackingState::kWaitingForReference, 40}};
+  EXPECT_THAT(Trust(summary).at("frames"), HasSubstr("in 40 the image showed too little to start from"));
+  EXPECT_THAT(Trust(summary), Not(Contains(Key("advice"))));
+  summary.states = {{TrackingState::kTracking, 60}, {TrackingState::kInitializing, 40}};
+  EXPECT_THAT(Trust(summary).at("advice"), HasSubstr("the camera moved too little"));
+}
+
 TEST(RunTrust, TellsWhetherTextureOrDepthIsMissing) {
   RunSummary summary = Summary(kKnown);
   summary.median_coverage = 0.3;
@@ -218,6 +228,9 @@ TEST(RunTrust, SaysHowNoisyTheImagesAreWhereItWasMeasured) {
   const std::string images = Trust(summary).at("images");
   EXPECT_THAT(images, HasSubstr("to 0.15 px"));
   EXPECT_THAT(images, HasSubstr("40 % of the corners"));
+  EXPECT_THAT(images, HasSubstr("noise of 1."));
+  summary.description.image_noise_levels = 0;  // black images
+  EXPECT_THAT(Trust(summary).at("images"), testing::StartsWith("In the first images points are tracked to 0.15 px"));
 }
 
 TEST(RunTrust, ARunWithoutFramesSaysNothing) { EXPECT_TRUE(TrustIn({}).empty()); }
