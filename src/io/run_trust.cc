@@ -148,7 +148,9 @@ std::string OfPrior(const RunSummary& summary) {
 std::string OfCamera(const FirstMapEvidence& evidence) {
   if (!(evidence.depth_sigma > 0.0)) return {};
   const bool was_tested = evidence.still_camera_error_ratio > 0.0;
-  if (!evidence.deforming && !was_tested) return "the scene was taken for rigid, so that all motion is the camera's.";
+  if (!evidence.deforming && !was_tested)
+    return std::string("the scene was taken for rigid, so that all motion is the camera's") +
+           (HasMeasuredDepth(evidence) ? "." : "; whether the camera moved at all was not tested.");
   if (!was_tested) return "the scene deforms; whether the camera moves was not tested.";
   const std::string by_errors =
       std::string(evidence.deforming ? "the scene deforms"

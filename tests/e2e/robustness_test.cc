@@ -266,6 +266,7 @@ TEST(Robustness, ARunWithoutAMapNamesTheMethodThatWouldStart) {
   const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), options);
   EXPECT_EQ(summary.status, RunStatus::kFailed);
   EXPECT_THAT(summary.note, HasSubstr("--Init.method gated would have made a map by frame "));
+  EXPECT_THAT(summary.note, HasSubstr("right only if the camera moves and the scene hardly deforms"));
   options.tracker.init.method = InitMethod::kGated;
   EXPECT_EQ(TrackSequenceAt(kSequence, folder.Path("gated"), options).status, RunStatus::kCompleted) << "it does";
 }

@@ -157,6 +157,7 @@ TEST(RunTrust, AMapWhoseSpreadWasNotMeasuredIsNotJudgedByIt) {
   gated.deforming = false;
   gated.depth_spread = gated.still_camera_error_ratio = 0;
   EXPECT_THAT(Trust(Summary(gated)), Not(Contains(Key("advice"))));
+  EXPECT_THAT(Trust(Summary(gated)).at("camera"), HasSubstr("whether the camera moved at all was not tested"));
 }
 
 TEST(RunTrust, SaysThatTheCalibrationIsContradicted) {

@@ -214,7 +214,8 @@ void Bootstrapper::TakeAlternative(const Answer& answer) {
   if (!answer.alternative || answer.alternative->decision != InitDecision::kMap || AlternativeToAsk() == nullptr)
     return;
   would_start_ = "--Init.method " + std::string(alternative_->name()) + " would have made a map by frame " +
-                 std::to_string(answer.last.frame_idx) + ", which is right if the scene hardly deforms";
+                 std::to_string(answer.last.frame_idx) +
+                 ", which is right only if the camera moves and the scene hardly deforms";
 }
 
 // There is a map, or it is known that it takes too much for granted.
