@@ -263,10 +263,21 @@ std::string Advice(const RunSummary& summary) {
   if (static_cast<double>(explained) < kMinFrameShare * static_cast<double>(summary.frames_read) &&
       FramesIn(summary, TrackingState::kAmbiguous) == 0)
     advice.emplace_back("Where there is no map, the camera moved too little or the points lasted too briefly.");
+  if (const std::string on_skipped = AdviceOnSkippedImages(summary); !on_skipped.empty())
+    advice.push_back(on_skipped + ".");
   return Joined(advice);
 }
 
 }  // namespace
+
+std::string AdviceOnSkippedImages(const RunSummary& summary) {
+  if (!summary.stream || summary.stream->skipped == 0 || summary.frames_tracked > 0) return {};
+  return std::to_string(summary.stream->skipped) + " of " + std::to_string(summary.stream->received) +
+         " images were skipped, which makes points harder to follow: track all with --LiveInput.frames all, or what "
+         "was "
+         "recorded with pliant track " +
+         summary.description.input;
+}
 
 std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summary) {
   std::vector<std::pair<std::string, std::string>> trust;

@@ -20,6 +20,7 @@
 #include "pliant/base/version.h"
 #include "pliant/estimation/frame/frame_problem.h"
 #include "pliant/io/checkpoint.h"
+#include "pliant/io/run_trust.h"
 #include "pliant/tracking/stage_times.h"
 
 namespace pliant {
@@ -272,6 +273,8 @@ RunSummary FinishRun(RunWriter& writer, LiveSource* live, Ending ending) {
     writer.SetStream(live->counts());
     const Status recorded = live->FinishRecording();
     if (!recorded.ok() && ending.status != RunStatus::kFailed) ending = {RunStatus::kFailed, recorded.message()};
+    if (const std::string advice = AdviceOnSkippedImages(writer.summary()); !advice.empty())
+      ending.note += "; " + advice;
   }
   const Status finished = writer.Finish(ending.status, ending.note);
   RunSummary summary = writer.summary();

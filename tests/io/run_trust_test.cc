@@ -108,6 +108,22 @@ TEST(RunTrust, ImagesThatShowTooLittleAreNoLackOfMotion) {
   EXPECT_THAT(Trust(summary).at("advice"), HasSubstr("the camera moved too little"));
 }
 
+TEST(RunTrust, ALiveRunWithoutAMapSaysHowManyImagesWereSkipped) {
+  RunSummary summary = Summary(kKnown);
+  summary.description.input = "/runs/or_recording";
+  summary.stream = StreamCounts{.received = 150, .skipped = 50};
+  EXPECT_EQ(AdviceOnSkippedImages(summary), "") << "it has a map";
+  summary.frames_tracked = 0;
+  summary.first_maps.clear();
+  summary.states = {{TrackingState::kInitializing, 100}};
+  const std::string advice = Trust(summary).at("advice");
+  EXPECT_THAT(advice, HasSubstr("50 of 150 images were skipped"));
+  EXPECT_THAT(advice, HasSubstr("--LiveInput.frames all"));
+  EXPECT_THAT(advice, HasSubstr("pliant track /runs/or_recording."));
+  summary.stream->skipped = 0;
+  EXPECT_EQ(AdviceOnSkippedImages(summary), "");
+}
+
 TEST(RunTrust, TellsWhetherTextureOrDepthIsMissing) {
   RunSummary summary = Summary(kKnown);
   summary.median_coverage = 0.3;

@@ -17,4 +17,8 @@ namespace pliant {
 // nothing of the first map. Empty for a run that has no frames. Only the summary's own numbers are used.
 std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summary);
 
+// Of a run on a live source that has no map and skipped images: how many, and what to do; without a full stop. Empty
+// for others.
+std::string AdviceOnSkippedImages(const RunSummary& summary);
+
 }  // namespace pliant
