@@ -87,6 +87,7 @@ RunDescription ReadDescription(const Json& json) {
   description.tracks = json.value("tracks", "");
   description.depth_prior = json.value("depth_prior", "");
   description.extensions = json.value("extensions", std::vector<std::string>());
+  description.warnings = json.value("warnings", std::vector<std::string>());
   if (const Json range = json.value("frames", Json()); !range.is_null())
     description.range = {range.at("start").get<int>(), range.at("end").get<int>(), range.at("stride").get<int>()};
   if (const Json working = json.value("working_image", Json()); !working.is_null()) {
@@ -169,6 +170,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
                  {"interlaced", summary.description.interlaced}}},
                {"status", EnumName(summary.status)},
                {"note", summary.note},
+               {"warnings", summary.description.warnings},
                {"trust", trust},
                {"first_map", first_maps.empty() ? Json() : first_maps.front()},
                {"first_maps", first_maps},

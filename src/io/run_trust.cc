@@ -181,6 +181,12 @@ std::string OfAssumedCamera(const RunDescription& run) {
          " degrees were assumed. If that is wrong, so are depths and motion.";
 }
 
+std::string OfRecording(const RunDescription& run) {
+  std::vector<std::string> sentences;
+  for (const std::string& warning : run.warnings) sentences.push_back(warning + ".");
+  return Joined(sentences);
+}
+
 std::string OfImages(const RunDescription& run) {
   if (!(run.track_noise_px > 0.0)) return {};
   // None is seen in images that are black.
@@ -292,6 +298,7 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   add("calibration", HasEstimatedCamera(summary)
                          ? "The camera's focal length was estimated together with the scene."
                          : Joined({OfAssumedCamera(summary.description), OfMaps(summary, OfCalibration)}));
+  add("recording", OfRecording(summary.description));
   add("images", OfImages(summary.description));
   if (summary.median_reprojection_error_px > 0.0) add("tracks", OfTracks(summary));
   if (summary.median_coverage > 0.0) add("coverage", OfCoverage(summary));

@@ -43,6 +43,7 @@ RunDescription JoinedDescription(const JoinRequest& request, const std::vector<R
     description.range.end = is_open ? -1 : std::max(description.range.end, of_part.range.end);
     AddNames(of_part.oracles, &description.oracles);
     AddNames(of_part.extensions, &description.extensions);
+    AddNames(of_part.warnings, &description.warnings);
     if (description.depth_prior.empty()) description.depth_prior = of_part.depth_prior;
     if (description.tracks.empty()) description.tracks = of_part.tracks;
   }

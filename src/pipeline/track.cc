@@ -247,17 +247,25 @@ Status CheckImagesComeAgain(const SequenceRequest& input) {
           "images that come from a live source or a program do not come again: such a run cannot be resumed"};
 }
 
-void TellBeginning(const Sequence& sequence, const RunStart& start, std::span<TrackObserver* const> observers) {
+// The warnings of the beginning.
+std::vector<std::string> TellBeginning(const Sequence& sequence, const RunStart& start,
+                                       std::span<TrackObserver* const> observers) {
+  std::vector<std::string> warnings = sequence.Warnings();
+  warnings.insert(warnings.end(), start.warnings.begin(), start.warnings.end());
   for (TrackObserver* observer : observers) {
-    for (const std::string& warning : sequence.Warnings()) observer->OnWarning(warning);
-    for (const std::string& warning : start.warnings) observer->OnWarning(warning);
+    for (const std::string& warning : warnings) observer->OnWarning(warning);
     observer->OnCamera(sequence.camera());
   }
+  return warnings;
 }
 
-void TellOfImages(const CheckedSequence& checked, std::span<TrackObserver* const> observers) {
-  for (const std::string& warning : checked.Check().wrong)
+// Adds to the warnings of the beginning.
+void TellOfImages(const CheckedSequence& checked, std::span<TrackObserver* const> observers,
+                  std::vector<std::string>* warnings) {
+  for (const std::string& warning : checked.Check().wrong) {
     for (TrackObserver* observer : observers) observer->OnWarning(warning);
+    warnings->push_back(warning);
+  }
 }
 
 // Null: no oracle is on.
@@ -281,6 +289,21 @@ RunSummary FinishRun(RunWriter& writer, LiveSource* live, Ending ending) {
   if (!finished.ok()) {
     summary.status = RunStatus::kFailed;
     summary.note = finished.message();
+  }
+  return summary;
+}
+
+// They are known only after all images were read. Where the former run of the folder was restored, and where run.json
+// could not be written, it is left as it is.
+RunSummary WithWarnings(RunSummary summary, std::vector<std::string> warnings, const std::string& output_path) {
+  if (warnings.empty()) return summary;
+  summary.description.warnings = std::move(warnings);
+  const std::string path = output_path + "/run.json";
+  const auto written = ReadRunSummary(path);
+  if (!written.ok() || written->note != summary.note || written->status != summary.status) return summary;
+  if (const Status status = WriteRunSummary(path, summary); !status.ok()) {
+    summary.status = RunStatus::kFailed;
+    summary.note = status.message();
   }
   return summary;
 }
@@ -355,7 +378,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   if (const Status begun = PassOldImages(options, *start, &request.input, &*sequence); !begun.ok()) return begun;
   usable.tracker = WorkingOptions(std::move(usable.tracker), start->working_image);
 
-  TellBeginning(**sequence, *start, observers);
+  std::vector<std::string> warnings = TellBeginning(**sequence, *start, observers);
   int frames = (*sequence)->size();
   if (checkpoint) {
     frames -= (checkpoint->point.frame_idx - request.input.start) / request.input.stride + 1;
@@ -372,8 +395,8 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   }
   for (TrackObserver* observer : observers) observer->OnStart(std::max(frames, 0));
   const Ending ending = loop.Run();
-  TellOfImages(checked, observers);
-  return FinishRun(*writer, live.get(), ending);
+  TellOfImages(checked, observers, &warnings);
+  return WithWarnings(FinishRun(*writer, live.get(), ending), std::move(warnings), request.output_path);
 }
 
 }  // namespace pliant

@@ -165,6 +165,19 @@ TEST(Robustness, AFrozenStretchIsTrackedWithACameraThatStandsStill) {
             kStandstill_mm);
 }
 
+TEST(Robustness, WarningsAboutTheRecordingAreInTheSummary) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, kShortFrames);
+  for (int i = 0; i < kShortFrames; i += 2) sequence.Replace(i + 1, cv::imread(sequence.Image(i).string()));
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
+  const auto repeats = testing::Contains(HasSubstr("images (50 %) repeat the one before"));
+  EXPECT_THAT(summary.description.warnings, repeats);
+  const auto written = ReadRunSummary(folder.Path("run/run.json"));
+  ASSERT_TRUE(written.ok()) << written.status().message();
+  EXPECT_THAT(written->description.warnings, repeats);
+  EXPECT_EQ(written->note, summary.note);
+}
+
 TEST(Robustness, AFrozenSequenceCarriesNoMapAndSaysFrozen) {
   const TestFolder folder;
   const SequenceCopy sequence(folder, 6);

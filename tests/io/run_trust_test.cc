@@ -250,6 +250,13 @@ TEST(RunTrust, SaysHowNoisyTheImagesAreWhereItWasMeasured) {
   EXPECT_THAT(Trust(summary).at("images"), testing::StartsWith("In the first images points are tracked to 0.15 px"));
 }
 
+TEST(RunTrust, ListsWhatIsOddAboutTheRecording) {
+  RunSummary summary = Summary(kKnown);
+  EXPECT_THAT(Trust(summary), Not(Contains(Key("recording"))));
+  summary.description.warnings = {"8 of 16 images repeat the one before", "the frame rate varies"};
+  EXPECT_EQ(Trust(summary).at("recording"), "8 of 16 images repeat the one before. the frame rate varies.");
+}
+
 TEST(RunTrust, ARunWithoutFramesSaysNothing) { EXPECT_TRUE(TrustIn({}).empty()); }
 
 }  // namespace

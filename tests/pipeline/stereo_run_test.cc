@@ -156,6 +156,7 @@ TEST_F(StereoRun, SaysBeforeItStartsThatPairsAreSwappedOrDepthIsInAnotherUnit) {
   ASSERT_TRUE(failed.ok()) << failed.status().message();
   EXPECT_EQ(failed->status, RunStatus::kFailed);
   EXPECT_THAT(observer.warnings, Contains(HasSubstr("left and right are swapped")));
+  EXPECT_EQ(failed->description.warnings, observer.warnings);
 
   std::filesystem::remove_all(folder_.Path("set"));
   RenderedSequence in_cm;

@@ -92,6 +92,8 @@ struct RunDescription {
   std::vector<std::string> joined_from = {};     // the runs that were joined, absolute; empty: a run of its own
   bool interlaced = false;                       // the images are: their odd rows were not used
   std::optional<RunRefinement> refinement = {};  // nothing: not refined, or by an earlier version
+  // What is odd about the recording and what belongs to it: sentences without a full stop, known at the run's end.
+  std::vector<std::string> warnings = {};
 };
 
 // Images of a source that went on while they were tracked.

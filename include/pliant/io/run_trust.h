@@ -12,9 +12,10 @@
 
 namespace pliant {
 
-// Topics (frames, depth, camera, calibration, images, tracks, coverage, advice) with one or more sentences each, in
-// this order; those of which nothing is known are left out. Of a refined run they say what the refinement knows, and
-// nothing of the first map. Empty for a run that has no frames. Only the summary's own numbers are used.
+// Topics (frames, depth, depth_prior, camera, calibration, recording, images, tracks, coverage, advice) with one or
+// more sentences each, in this order; those of which nothing is known are left out. Of a refined run they say what the
+// refinement knows, and nothing of the first map. Empty for a run that has no frames. Only the summary's own numbers
+// are used.
 std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summary);
 
 // Of a run on a live source that has no map and skipped images: how many, and what to do; without a full stop. Empty
