@@ -13,18 +13,36 @@ namespace pliant::cli {
 namespace {
 
 constexpr std::size_t kLongestSentence = 400;
-constexpr std::size_t kKeptEnd = 120;  // of a longer one: what to do stands there
+constexpr std::size_t kLongestEnd = 280;  // of a longer one, in whole clauses: what to do stands there
+constexpr std::size_t kKeptEnd = 120;     // where its last clause is longer than that
+constexpr std::string_view kDots = " ... ";
 
 bool IsInsideOfCharacter(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }  // of UTF-8
 
-// The middle of a sentence that quotes too much of an input is left out.
+// Where the end begins that is kept of a long sentence: at a clause, else at a word, else in a long quotation.
+std::size_t KeptFrom(std::string_view sentence) {
+  if (const std::size_t clause = sentence.find("; ", sentence.size() - kLongestEnd); clause != std::string_view::npos)
+    return clause + 2;
+  std::size_t begin = sentence.size() - kKeptEnd;
+  if (const std::size_t blank = sentence.find(' ', begin); blank != std::string_view::npos) return blank + 1;
+  while (begin < sentence.size() && IsInsideOfCharacter(sentence[begin])) ++begin;
+  return begin;
+}
+
+// How much of its beginning is kept, of at most `longest` bytes.
+std::size_t KeptTo(std::string_view sentence, std::size_t longest) {
+  if (const std::size_t blank = sentence.rfind(' ', longest); blank != std::string_view::npos && blank > longest / 2)
+    return blank;
+  while (longest > 0 && IsInsideOfCharacter(sentence[longest])) --longest;
+  return longest;
+}
+
+// The middle of a sentence that quotes too much of an input, or says too much, is left out.
 std::string Shortened(std::string_view sentence) {
   if (sentence.size() <= kLongestSentence) return std::string(sentence);
-  std::size_t end = sentence.size() - kKeptEnd;
-  while (end < sentence.size() && IsInsideOfCharacter(sentence[end])) ++end;
-  std::size_t begin = kLongestSentence - kKeptEnd - 5;  // the dots and the blanks around them
-  while (begin > 0 && IsInsideOfCharacter(sentence[begin])) --begin;
-  return std::string(sentence.substr(0, begin)) + " ... " + std::string(sentence.substr(end));
+  const std::string_view end = sentence.substr(KeptFrom(sentence));
+  const std::size_t begin = KeptTo(sentence, kLongestSentence - kDots.size() - end.size());
+  return std::string(sentence.substr(0, begin)) + std::string(kDots) + std::string(end);
 }
 
 bool IsJson() { return TheLogging().format == LogFormat::kJson; }

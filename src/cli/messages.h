@@ -28,7 +28,8 @@ struct Logging {
 // There is one in a program, which its CommandLine sets.
 Logging& TheLogging();
 
-// One sentence behind the name of the command, shortened to 400 characters: "pliant track: sentence".
+// One sentence behind the name of the command: "pliant track: sentence". Of more than 400 characters the middle is left
+// out, between words; its last clauses, behind "; ", are kept.
 void SayError(std::string_view sentence);
 void SayWarning(std::string_view sentence);
 // What is to be known of a result, or happens on the way to it: "note: sentence".

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/frame_list.h"
+#include "cli/messages.h"
 
 namespace pliant::cli {
 enum class Fruit { kApple, kPear };
@@ -244,6 +245,23 @@ TEST(CommandLine, AMessageThatQuotesALongInputIsShortened) {
   EXPECT_THAT(outcome.err, HasSubstr("--pieces is 'xxx"));
   EXPECT_THAT(outcome.err, HasSubstr(" ... "));
   EXPECT_THAT(outcome.err, HasSubstr("give a whole number from"));
+}
+
+TEST(CommandLine, AMessageThatIsTooLongIsCutBetweenWordsAndKeepsItsAdvice) {
+  std::string words;
+  for (int i = 0; i < 60; ++i) words += " because";
+  std::string advice = "; calibrate";
+  for (int i = 0; i < 20; ++i) advice += " the camera";
+  testing::internal::CaptureStderr();
+  SayError("there is no map" + words + advice);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_LE(said.size(), 401U);
+  EXPECT_THAT(said, HasSubstr(" because ... calibrate the camera"));
+  EXPECT_THAT(said, testing::EndsWith(advice.substr(2) + "\n"));
+
+  testing::internal::CaptureStderr();
+  SayError("there is no map" + words);  // one clause
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr(" because ... because "));
 }
 
 TEST(CommandLine, AProgramThatDoesOneThingSpeaksUnderItsOwnName) {
