@@ -117,6 +117,10 @@ RunWriter::~RunWriter() = default;
 
 const RunSummary& RunWriter::summary() const { return state_->summary; }
 
+void RunWriter::SetWarnings(std::vector<std::string> warnings) {
+  state_->summary.description.warnings = std::move(warnings);
+}
+
 void RunWriter::SetStream(const StreamCounts& stream) { state_->summary.stream = stream; }
 
 namespace {

@@ -293,21 +293,6 @@ RunSummary FinishRun(RunWriter& writer, LiveSource* live, Ending ending) {
   return summary;
 }
 
-// They are known only after all images were read. Where the former run of the folder was restored, and where run.json
-// could not be written, it is left as it is.
-RunSummary WithWarnings(RunSummary summary, std::vector<std::string> warnings, const std::string& output_path) {
-  if (warnings.empty()) return summary;
-  summary.description.warnings = std::move(warnings);
-  const std::string path = output_path + "/run.json";
-  const auto written = ReadRunSummary(path);
-  if (!written.ok() || written->note != summary.note || written->status != summary.status) return summary;
-  if (const Status status = WriteRunSummary(path, summary); !status.ok()) {
-    summary.status = RunStatus::kFailed;
-    summary.note = status.message();
-  }
-  return summary;
-}
-
 // `usable`: the options of the working image; `options`: as they are listed.
 Result<RunWriter> BeginWriting(const RunRequest& request, const TrackOptions& usable, const TrackOptions& options,
                                const RunStart& start, const Camera& camera,
@@ -396,7 +381,8 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   for (TrackObserver* observer : observers) observer->OnStart(std::max(frames, 0));
   const Ending ending = loop.Run();
   TellOfImages(checked, observers, &warnings);
-  return WithWarnings(FinishRun(*writer, live.get(), ending), std::move(warnings), request.output_path);
+  writer->SetWarnings(std::move(warnings));
+  return FinishRun(*writer, live.get(), ending);
 }
 
 }  // namespace pliant

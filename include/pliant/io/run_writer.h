@@ -90,6 +90,9 @@ class RunWriter {
   // What became of the images of a live source; before Finish.
   void SetStream(const StreamCounts& stream);
 
+  // RunDescription::warnings, which are known when all images were read; before Finish.
+  void SetWarnings(std::vector<std::string> warnings);
+
   // Brings the rows of merged submaps into one world, writes map.ply, sparse/ and the final run.json; to be called
   // once, whatever ended the run. run.json is attempted even when the others fail, and then says `failed` with the
   // reason. The checkpoint of a run that has come to its end is deleted; before, its rows are kept beside it. Where a
