@@ -5,7 +5,7 @@
 
     calibration.py --program build/release/pliant --output_path RESULTS [--only "NAME;..."] [--seed N]
 
-Photographs a chessboard from 40 sides through lenses of every camera model, clean and as an endoscope records it,
+Photographs a chessboard from 24 sides through lenses of every camera model, clean and as an endoscope records it,
 calibrates with and without knowledge of the model, and prints a table; then the same for pairs of cameras. What is
 there already is kept.
 """
@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
 from scenes import call, scene_arguments, slug  # noqa: E402
 
 BOARD = "chessboard:9x6:3"
-VIEWS = 40
+VIEWS = 24
 WIDTH, HEIGHT = 640, 480
 # name: model, parameters
 LENSES = {

@@ -12,7 +12,7 @@
 #include <Eigen/Core>
 #include <ceres/ceres.h>
 
-#include "pliant/calibration/find_board.h"
+#include "pliant/board/find_board.h"
 #include "pliant/camera/camera.h"
 #include "pliant/geometry/rigid3.h"
 

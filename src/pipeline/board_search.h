@@ -11,7 +11,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "pliant/base/status.h"
-#include "pliant/calibration/find_board.h"
+#include "pliant/board/find_board.h"
 #include "pliant/pipeline/calibrate_images.h"
 
 namespace pliant {

@@ -7,7 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "pliant/calibration/draw_board.h"
+#include "pliant/board/draw_board.h"
 #include "simulation/surface.h"
 
 namespace pliant::simulation {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "pliant/base/random.h"
-#include "pliant/calibration/board.h"
+#include "pliant/board/board.h"
 #include "pliant/camera/camera.h"
 
 namespace pliant::simulation {

@@ -19,8 +19,8 @@ import pathlib
 import re
 import sys
 
-MODULES = ("base geometry image camera colmap scene io datasets calibration simulation photometric deformation residuals "
-           "estimation refinement surface tracking evaluation exchange pipeline viewer python cli").split()
+MODULES = ("base geometry image camera colmap scene io datasets board simulation photometric deformation residuals "
+           "estimation calibration refinement surface tracking evaluation exchange pipeline viewer python cli").split()
 # Where a library may be included: in the files of one module whose names begin so; where nothing is said, in one file of it.
 LIBRARY_HOMES = {"flann": ("deformation", ""), "opengv": ("estimation", "opengv_"), "assimp": ("simulation", "")}
 # The folders of a module, bottom to top, where the upper ones build on the lower ones.

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/calibration/draw_board.h"
+#include "pliant/board/draw_board.h"
 
 #include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "pliant/calibration/find_board.h"
+#include "pliant/board/find_board.h"
 
 namespace pliant {
 namespace {

@@ -13,8 +13,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "pliant/base/random.h"
-#include "pliant/calibration/board.h"
-#include "pliant/calibration/find_board.h"
+#include "pliant/board/board.h"
+#include "pliant/board/find_board.h"
 #include "pliant/camera/camera.h"
 #include "pliant/geometry/rigid3.h"
 

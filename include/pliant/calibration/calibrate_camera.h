@@ -23,8 +23,8 @@
 #include "pliant/base/job_progress.h"
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
-#include "pliant/calibration/board.h"
-#include "pliant/calibration/find_board.h"
+#include "pliant/board/board.h"
+#include "pliant/board/find_board.h"
 #include "pliant/camera/camera.h"
 #include "pliant/geometry/rigid3.h"
 

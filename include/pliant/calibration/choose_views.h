@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "pliant/calibration/board.h"
+#include "pliant/board/board.h"
+#include "pliant/board/find_board.h"
 #include "pliant/calibration/calibrate_camera.h"
-#include "pliant/calibration/find_board.h"
 
 namespace pliant {
 

@@ -17,10 +17,10 @@
 
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
-#include "pliant/calibration/board.h"
+#include "pliant/board/board.h"
+#include "pliant/board/find_board.h"
 #include "pliant/calibration/calibrate_camera.h"
 #include "pliant/calibration/calibrate_stereo.h"
-#include "pliant/calibration/find_board.h"
 #include "pliant/datasets/pair_layout.h"
 
 namespace pliant {

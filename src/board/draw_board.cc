@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/calibration/draw_board.h"
+#include "pliant/board/draw_board.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/charuco.h"
-#include "pliant/calibration/find_board.h"
+#include "board/charuco.h"
+#include "pliant/board/find_board.h"
 
 namespace pliant {
 namespace {

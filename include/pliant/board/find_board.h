@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
-#include "pliant/calibration/board.h"
+#include "pliant/board/board.h"
 
 namespace pliant {
 

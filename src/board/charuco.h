@@ -9,8 +9,8 @@
 #include <opencv2/core/mat.hpp>
 
 #include "pliant/base/status.h"
-#include "pliant/calibration/board.h"
-#include "pliant/calibration/find_board.h"
+#include "pliant/board/board.h"
+#include "pliant/board/find_board.h"
 
 namespace pliant {
 

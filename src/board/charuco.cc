@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "calibration/charuco.h"
+#include "board/charuco.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/calibration/board.h"
+#include "pliant/board/board.h"
 
 #include "pliant/base/text.h"
 

@@ -8,7 +8,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "pliant/base/status.h"
-#include "pliant/calibration/board.h"
+#include "pliant/board/board.h"
 
 namespace pliant {
 
