@@ -39,17 +39,11 @@ Result<Surface> MakeBoardSurface(const SimulationOptions::Scene& options) {
     }
   }
   const std::size_t count = surface.vertices.size();
-  surface.normals.assign(count, -Eigen::Vector3f::UnitZ());
   surface.swell_center.assign(count, {static_cast<float>(middle_mm.x()), static_cast<float>(middle_mm.y()), 0.0F});
   surface.swell_radius_mm = std::sqrt(sum_sq / static_cast<double>(count));
-  for (int row = 0; row < down; ++row) {
-    for (int column = 0; column < across; ++column) {
-      const auto a = static_cast<std::uint32_t>(row * (across + 1) + column);
-      const auto c = a + static_cast<std::uint32_t>(across) + 1;
-      surface.triangles.push_back({a, a + 1, c});
-      surface.triangles.push_back({a + 1, c + 1, c});
-    }
-  }
+  surface.grid = SurfaceGrid{.rows = down + 1, .columns = across + 1};
+  FillGrid(surface);
+  surface.grid.reset();  // the chart is the picture's
   return surface;
 }
 
