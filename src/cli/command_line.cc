@@ -306,6 +306,10 @@ int CommandLine::Failure(std::string_view sentence) const {
   return kExitFailed;
 }
 
+int CommandLine::Failure(const Status& status) const {
+  return status.code() == ErrorCode::kInvalidArgument ? UsageError(status.message()) : Failure(status.message());
+}
+
 bool CommandLine::IsShown(const OptionField& field, Detail detail) const {
   const auto& shown = manual_.main_options;
   return detail == Detail::kAll || shown.empty() || std::find(shown.begin(), shown.end(), field.name) != shown.end();

@@ -102,6 +102,8 @@ class CommandLine {
 
   // For what could not be carried out: says it and gives kExitFailed.
   int Failure(std::string_view sentence) const;
+  // The same of what the library says: what it takes for a wrong argument is wrong usage (kExitUsage).
+  int Failure(const Status& status) const;
 
   enum class Detail { kMain, kAll };
   // The manual of `--help`, or of `--help-all`.

@@ -22,8 +22,7 @@ const Manual kSimulateManual = {
     "Renders what a camera with a light beside it sees in a textured scene that deforms, and writes it as a sequence "
     "that pliant track reads and pliant evaluate knows the truth of. The scene is a colon with folds, a smooth tube, "
     "an organ's surface seen from outside, two lobes that move by themselves, a mesh from a file, or a board for "
-    "pliant "
-    "calibrate (Scene.kind).\n\n"
+    "calibration (Scene.kind).\n\n"
     "Reads nothing but the mesh (Scene.mesh_path) and the camera's poses (Trajectory.path) where they are asked for; "
     "their names are relative to the working folder and are written absolute. The same options give the same files, "
     "byte for byte, whatever the number of threads.\n\n"
@@ -80,10 +79,7 @@ int SimulateCommand(std::span<const std::string> args) {
       return stop ? SimulationContinue::kStop : SimulationContinue::kYes;
     });
   }
-  if (!status.ok()) {
-    SayError(status.message());
-    return status.code() == ErrorCode::kInvalidArgument ? kExitUsage : kExitFailed;
-  }
+  if (!status.ok()) return line.Failure(status);
   const double scene_s = std::chrono::duration<double>(scene_stood - started).count();
   const double frames_s = std::chrono::duration<double>(Clock::now() - scene_stood).count();
   char timing[96];

@@ -76,9 +76,7 @@ int SurfaceCommand(std::span<const std::string> args) {
   });
   depths.reset();
   mesh.reset();
-  if (!summary.ok())
-    return summary.status().code() == ErrorCode::kInvalidArgument ? line.UsageError(summary.status().message())
-                                                                  : line.Failure(summary.status().message());
+  if (!summary.ok()) return line.Failure(summary.status());
   for (const std::string& warning : summary->warnings) SayWarning(warning);
   if (summary->stopped)
     return line.Failure("stopped on request; the depths of " + std::to_string(summary->frames.size()) +

@@ -79,9 +79,7 @@ int TruthCommand(std::span<const std::string> args) {
   if (arguments.points_path.empty() == (arguments.grid_px == 0))
     return line.UsageError("give either --points FILE or --grid_px N");
   const Status status = Follow(arguments);
-  if (status.ok()) return kExitOk;
-  SayError(status.message());
-  return status.code() == ErrorCode::kInvalidArgument ? kExitUsage : kExitFailed;
+  return status.ok() ? kExitOk : line.Failure(status);
 }
 
 }  // namespace pliant::cli
