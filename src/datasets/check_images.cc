@@ -189,12 +189,11 @@ cv::Mat LitView(const std::vector<GridSample>& samples) {
 void JudgeLeft(const std::vector<GridSample>& samples, ImageCheck* check) {
   if (samples.empty()) return;
   const cv::Mat view = LitView(samples);
+  const double all = static_cast<double>(samples.size()) * cv::countNonZero(view);
   double left = 0;
-  double all = 0;
   bool has_masks = false;
   for (const GridSample& sample : samples) {
     has_masks = has_masks || !sample.valid.empty();
-    all += cv::countNonZero(view);
     left += cv::countNonZero(sample.valid.empty() ? view : cv::Mat(view & (sample.valid != 0)));
   }
   if (!has_masks || all == 0) return;

@@ -20,11 +20,16 @@
 namespace pliant {
 namespace {
 
-TEST(DepthExr, HoldsTheFloatsAsTheyAre) {
-  const TestFolder folder;
+cv::Mat SomeDepth() {
   cv::Mat depth(37, 53, CV_32F);
   cv::RNG(3).fill(depth, cv::RNG::UNIFORM, 0.001, 1000.0);
   depth.at<float>(5, 7) = 0;
+  return depth;
+}
+
+TEST(DepthExr, HoldsTheFloatsAsTheyAre) {
+  const TestFolder folder;
+  const cv::Mat depth = SomeDepth();
   ASSERT_TRUE(WriteDepthExr(folder.Path("depth.exr"), depth).ok());
 
   Imf::InputFile file(folder.Path("depth.exr").c_str());
@@ -40,9 +45,7 @@ TEST(DepthExr, HoldsTheFloatsAsTheyAre) {
 
 TEST(DepthExr, IsReadByOpenCv) {
   const TestFolder folder;
-  cv::Mat depth(37, 53, CV_32F);
-  cv::RNG(3).fill(depth, cv::RNG::UNIFORM, 0.001, 1000.0);
-  depth.at<float>(5, 7) = 0;
+  const cv::Mat depth = SomeDepth();
   ASSERT_TRUE(WriteDepthExr(folder.Path("depth.exr"), depth).ok());
   setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0);
   const cv::Mat read = cv::imread(folder.Path("depth.exr"), cv::IMREAD_UNCHANGED);
