@@ -25,11 +25,15 @@ class FrameGrabber {
   static Result<std::unique_ptr<FrameGrabber>> Open(const std::string& source, double timeout_s,
                                                     const std::function<bool()>& is_stopped);
 
-  // Waits for the next image, 8-bit BGR; nothing at the source's end, or where it stalls. What cannot be decoded is
-  // left out. To be called by one thread, as has_stalled.
+  // Waits for the next image, 8-bit BGR; nothing at the source's end, where it stalls, or before a change of size. What
+  // cannot be decoded is left out. To be called by one thread, as has_stalled and size_change.
   std::optional<cv::Mat> Grab();
   // Whether Grab has waited in vain, so that it gives nothing.
   bool has_stalled() const { return has_stalled_; }
+  // Why Grab gives nothing more: the images of standard input, as a sequence of JPEG, change their size there.
+  std::optional<JpegSizes::Change> size_change() const {
+    return standard_input_ ? standard_input_->size_change() : std::nullopt;
+  }
   // Images a second, where the source says it.
   std::optional<double> fps() const { return fps_; }
 

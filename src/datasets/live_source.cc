@@ -91,6 +91,14 @@ Result<LiveCalibration> CalibrationOf(const LiveRequest& request, cv::Size size,
   return LiveCalibration{std::move(data_set->calibration), std::move(data_set->warnings)};
 }
 
+Status ChangesSize(const JpegSizes::Change& change) {
+  const std::string from = SizeText(change.from.width, change.from.height);
+  return {ErrorCode::kMismatch, "the images on standard input change their size from " + from + " to " +
+                                    SizeText(change.to.width, change.to.height) + " after " +
+                                    std::to_string(change.images) +
+                                    " images; bring them all to the size of the calibration before they are piped"};
+}
+
 struct Arrival {
   cv::Mat image;
   Clock::time_point time;
@@ -131,8 +139,8 @@ struct LiveSource::State {
   mutable std::mutex mutex;
   std::condition_variable changed;
   std::optional<Arrival> next;
-  bool has_ended = false;    // nothing will come any more
-  bool has_stalled = false;  // that is why
+  bool has_ended = false;       // nothing will come any more
+  Status ended = Status::Ok();  // why, where it is no end
   std::optional<Clock::time_point> first_arrival, last_arrival;
   StreamCounts counts;
   std::vector<Clock::time_point> arrivals;        // of the images that were taken
@@ -162,7 +170,8 @@ void LiveSource::State::Receive() {
   }
   const std::lock_guard lock(mutex);
   has_ended = true;
-  has_stalled = grabber->has_stalled();
+  if (grabber->has_stalled()) ended = Stalled();
+  if (const auto change = grabber->size_change()) ended = ChangesSize(*change);
   changed.notify_all();
 }
 
@@ -192,7 +201,7 @@ Result<bool> LiveSource::State::HasNext(std::unique_lock<std::mutex>& lock) {
   const auto silence_s = [&] { return SecondsBetween(std::max(begin, last_arrival.value_or(begin)), Clock::now()); };
   while (!next) {
     if (IsStopped()) return false;
-    if (has_stalled) return Stalled();
+    if (!ended.ok()) return ended;
     if (has_ended) return false;
     if (silence_s() > request.options.timeout_s + 2) return Stalled();  // the decoder's own time-out comes first
     changed.wait_for(lock, kPoll);

@@ -62,7 +62,7 @@ StandardInput::~StandardInput() {
 }
 
 void StandardInput::PassOn(double timeout_s, const std::function<bool()>& is_stopped) {
-  std::vector<char> buffer(kBufferBytes);
+  std::vector<unsigned char> buffer(kBufferBytes);
   Clock::time_point last = Clock::now();
   while (!is_stopped()) {
     const Ready readable = Wait(STDIN_FILENO, POLLIN);
@@ -75,7 +75,8 @@ void StandardInput::PassOn(double timeout_s, const std::function<bool()>& is_sto
     const ssize_t count = read(STDIN_FILENO, buffer.data(), buffer.size());
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (count <= 0) return;
-    std::span<const char> rest(buffer.data(), static_cast<std::size_t>(count));
+    std::span<const unsigned char> rest(buffer.data(), static_cast<std::size_t>(count));
+    rest = rest.first(jpeg_sizes_.BytesBeforeChange(rest));
     while (!rest.empty()) {
       if (is_stopped()) return;
       if (Wait(write_end_, POLLOUT) == Ready::kNotYet) continue;
@@ -83,6 +84,8 @@ void StandardInput::PassOn(double timeout_s, const std::function<bool()>& is_sto
       if (written < 0 && errno != EINTR && errno != EAGAIN) return;
       if (written > 0) rest = rest.subspan(static_cast<std::size_t>(written));
     }
+    has_changed_size_ = jpeg_sizes_.change().has_value();
+    if (has_changed_size_) return;
     last = Clock::now();  // time in which the decoder did not read is not the sender's
   }
 }

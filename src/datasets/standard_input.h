@@ -10,14 +10,15 @@
 #include <memory>
 #include <thread>
 
+#include "datasets/jpeg_sizes.h"
 #include "pliant/base/status.h"
 
 namespace pliant {
 
 class StandardInput {
  public:
-  // The pipe ends with standard input, when nothing has come for `timeout_s`, or when `is_stopped` (asked from another
-  // thread) says so. Fails with kUnreadable: a terminal, or closed.
+  // The pipe ends with standard input, when nothing has come for `timeout_s`, before a JPEG image of another size, or
+  // when `is_stopped` (asked from another thread) says so. Fails with kUnreadable: a terminal, or closed.
   static Result<std::unique_ptr<StandardInput>> Open(double timeout_s, std::function<bool()> is_stopped);
   ~StandardInput();
   StandardInput(const StandardInput&) = delete;
@@ -26,6 +27,10 @@ class StandardInput {
   int descriptor() const { return read_end_; }
   // Whether the pipe has ended since nothing came.
   bool has_stalled() const { return has_stalled_; }
+  // The change of size before which the pipe has ended.
+  std::optional<JpegSizes::Change> size_change() const {
+    return has_changed_size_ ? jpeg_sizes_.change() : std::nullopt;
+  }
 
  private:
   StandardInput() = default;
@@ -33,7 +38,8 @@ class StandardInput {
 
   int read_end_ = -1;
   int write_end_ = -1;
-  std::atomic<bool> is_closing_ = false, has_stalled_ = false;
+  JpegSizes jpeg_sizes_;  // of the thread, until the last of these is set
+  std::atomic<bool> is_closing_ = false, has_stalled_ = false, has_changed_size_ = false;
   std::thread thread_;
 };
 

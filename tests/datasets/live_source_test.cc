@@ -13,6 +13,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "datasets/sequence_files.h"
 #include "pliant/camera/assumed_camera.h"
@@ -184,6 +186,30 @@ TEST_F(LiveSourceTest, ASourceThatStallsFailsAndOneThatIsStoppedEnds) {
   EXPECT_TRUE((*source)->Read(0)->has_value());
   stop = true;
   EXPECT_FALSE((*source)->Read(3)->has_value());
+}
+
+TEST_F(LiveSourceTest, SaysThatPhotographsChangeTheirSize) {
+  const auto send = [&](int idx, cv::Size size) {
+    cv::Mat image;
+    cv::resize(Gray(idx), image, size);
+    std::vector<unsigned char> bytes;
+    cv::imencode(".jpg", image, bytes);
+    pipe_.Write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  };
+  for (int idx = 0; idx < 4; ++idx) send(idx, {kWidth, kHeight});
+  for (int idx = 4; idx < 8; ++idx) send(idx, {kWidth / 2, kHeight / 2});
+  pipe_.Close();
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  for (int idx = 0; idx < 4; ++idx) {
+    const auto image = (*source)->Read(idx);
+    ASSERT_TRUE(image.ok() && image->has_value()) << idx;
+    EXPECT_NEAR(cv::mean(**image)[0], 40 + 20 * idx, 3);
+  }
+  const auto changed = (*source)->Read(4);
+  EXPECT_EQ(changed.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(changed.status().message(), HasSubstr("change their size from"));
+  EXPECT_THAT(changed.status().message(), HasSubstr("after 4 images"));
 }
 
 TEST_F(LiveSourceTest, SaysThatAPipeHasSentNothing) {
