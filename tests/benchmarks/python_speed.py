@@ -3,13 +3,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What Python costs: reading a large run, and tracking through the package beside the program.
 
-usage: PYTHONPATH=build/release/python:tests/python python3 tests/benchmarks/python_speed.py PROGRAM [REPETITIONS]
+usage: PYTHONPATH=build/release/python:tests/python python3 tests/benchmarks/python_speed.py PROGRAM OUT.json
+           [REPETITIONS]
 
-Prints processor times, the least of the repetitions: of reading a run of 1,000 frames with 500 points each; of tracking
+Prints, and writes as Google Benchmark does, processor times, the least of the repetitions: of reading a run of 1,000 frames with 500 points each; of tracking
 60 simulated frames by the program and by pliant.track, whose callback takes each frame's points; and of what
 pliant.Tracker does in Python's service for a frame (the image is copied, the points become arrays) beside the frame.
 """
 
+import json
 import pathlib
 import resource
 import subprocess
@@ -97,20 +99,24 @@ def service(sequence, repetitions):
     return frame, least(repetitions, (resource.RUSAGE_SELF, serve))[0] / len(images)
 
 
+def benchmark(name, seconds, **counters):
+    print(f"{name}: {1000 * seconds:.3f} ms", *(f"{label} {value:.4f}" for label, value in counters.items()), flush=True)
+    return {"name": f"Python/{name}", "run_type": "iteration", "real_time": seconds, "time_unit": "s", **counters}
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
-    repetitions = int(sys.argv[2]) if len(sys.argv) > 2 else 5
+    repetitions = int(sys.argv[3]) if len(sys.argv) > 3 else 5
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        print(f"reading {FRAMES} frames of {POINTS} points: {reading(folder / 'large', repetitions):.3f} s", flush=True)
+        results = [benchmark("read_run", reading(folder / "large", repetitions))]
         sequence = folder / "colon"
         pliant.simulate(sequence, {"Trajectory.frames": 60})
         by_program, by_package = tracking(program, sequence, folder, repetitions)
-        print(f"tracking 60 frames: {by_program:.3f} s by the program, {by_package:.3f} s by pliant.track "
-              f"({100 * (by_package / by_program - 1):+.1f} %)", flush=True)
+        results.append(benchmark("track", by_package, cost=by_package / by_program - 1))
         frame, served = service(sequence, repetitions)
-        print(f"pliant.Tracker: {1000 * frame:.2f} ms a frame, {1000 * served:.3f} ms of it for Python "
-              f"({100 * served / frame:.1f} %)")
+        results.append(benchmark("tracker_frame", frame, cost=served / frame))
+    pathlib.Path(sys.argv[2]).write_text(json.dumps({"benchmarks": results}, indent=1))
 
 
 if __name__ == "__main__":

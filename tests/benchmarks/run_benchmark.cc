@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The whole job as `pliant track` does it, images decoded and rows written: a simulated sequence of 640x480 in which
-// 500 points are placed at once (a start from depth) and stay in view. The argument is the number of threads. Counters:
+// The whole job as `pliant track` does it, images decoded and rows written: a simulated scene in which points are
+// placed at once (a start from depth) and stay in view. The arguments are the width of the images, the number of points
+// and that of threads. Counters:
 //   frames_per_second  over the frames in state tracking       points     followed in a frame, mean
 //   memory_mb          resident after a frame, largest         memory_growth_mb  from the first third to the end
 //
@@ -40,8 +41,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kFrames = 90;
-
 double ResidentMb() {
   std::ifstream statm("/proc/self/statm");
   double all_pages = 0;
@@ -64,17 +63,18 @@ std::filesystem::path WriteHeldScene(const std::filesystem::path& sequence, int 
   return written ? sequence : std::filesystem::path();
 }
 
-// The sequences are rendered once.
-const std::filesystem::path& SequencePath() {
-  static const TemporaryFolder folder("run_benchmark");
-  static const std::filesystem::path path = WriteHeldScene(folder.Path("sequence"), kFrames, 640, 480);
-  return path;
-}
+// The sequences are rendered once: 90 frames of 640x480, 30 of 1920x1080.
+struct HeldScene {
+  int width, height, frames;
+  TemporaryFolder folder{"run_benchmark_" + std::to_string(width)};
+  std::filesystem::path path = WriteHeldScene(folder.Path("sequence"), frames, width, height);
+};
 
-const std::filesystem::path& LargeSequencePath() {
-  static const TemporaryFolder folder("points_benchmark");
-  static const std::filesystem::path path = WriteHeldScene(folder.Path("sequence"), 12, 1920, 1080);
-  return path;
+const HeldScene& SceneOf(std::int64_t width) {
+  static const HeldScene small{640, 480, 90};
+  if (width == small.width) return small;
+  static const HeldScene large{1920, 1080, 30};
+  return large;
 }
 
 class Meter : public TrackObserver {
@@ -90,8 +90,8 @@ class Meter : public TrackObserver {
     resident_mb_.push_back(ResidentMb());
   }
 
-  void Report(benchmark::State& state) const {
-    if (frames_ < kFrames / 2) {
+  void Report(benchmark::State& state, int frames) const {
+    if (frames_ < frames / 2) {
       state.SkipWithError("the sequence was not tracked");
       return;
     }
@@ -110,17 +110,28 @@ class Meter : public TrackObserver {
   std::vector<double> resident_mb_;
 };
 
+// So near to each other that 10,000 fit into an image of 1920x1080, which is not made smaller.
+void SetPoints(int count, TrackOptions* options) {
+  options->image.working = WorkingImageMode::kFixed;
+  options->tracker.corners.min_distance_px = 5;
+  options->tracker.corners.max_corners = count;
+  options->tracker.max_lost_points = count;
+}
+
 void BM_Run(benchmark::State& state) {
-  if (SequencePath().empty()) {
+  const HeldScene& scene = SceneOf(state.range(0));
+  if (scene.path.empty()) {
     state.SkipWithError("the sequence could not be written");
     return;
   }
   TrackOptions options = MakeTrackOptions(Preset::kDefault);
-  options.threads = static_cast<int>(state.range(0));
+  options.threads = static_cast<int>(state.range(2));
   options.tracker.init.method = InitMethod::kDepth;
+  if (const int points = static_cast<int>(state.range(1)); points != options.tracker.corners.max_corners)
+    SetPoints(points, &options);
   RunRequest request;
-  request.input.image_path = SequencePath();
-  request.output_path = (SequencePath().parent_path() / "run").string();
+  request.input.image_path = scene.path;
+  request.output_path = scene.folder.Path("run");
   Meter meter;
   const std::array<TrackObserver*, 1> observers = {&meter};
   for (auto _ : state) {
@@ -131,9 +142,18 @@ void BM_Run(benchmark::State& state) {
       return;
     }
   }
-  meter.Report(state);
+  meter.Report(state, scene.frames);
 }
-BENCHMARK(BM_Run)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+BENCHMARK(BM_Run)
+    ->ArgNames({"width", "points", "threads"})
+    ->Args({640, 500, 1})
+    ->Args({640, 500, 2})
+    ->Args({1920, 500, 2})
+    ->Args({1920, 2000, 2})
+    ->Args({1920, 10000, 2})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(1);
 
 constexpr int kRendered = 100;
 constexpr int kShown = 600;
@@ -254,14 +274,13 @@ class PointMeter : public TrackObserver {
 void BM_Points(benchmark::State& state) {
   TrackOptions options = MakeTrackOptions(Preset::kDefault);
   options.threads = 1;
-  options.image.working = WorkingImageMode::kFixed;
   options.tracker.init.method = InitMethod::kDepth;
-  options.tracker.corners.max_corners = static_cast<int>(state.range(0));
-  options.tracker.corners.min_distance_px = 5;
-  options.tracker.max_lost_points = options.tracker.corners.max_corners;
+  SetPoints(static_cast<int>(state.range(0)), &options);
+  const HeldScene& scene = SceneOf(1920);
   RunRequest request;
-  request.input.image_path = LargeSequencePath();
-  request.output_path = (LargeSequencePath().parent_path() / "run").string();
+  request.input.image_path = scene.path;
+  request.input.end = 12;
+  request.output_path = scene.folder.Path("run");
   PointMeter meter;
   const std::array<TrackObserver*, 1> observers = {&meter};
   for (auto _ : state) {
