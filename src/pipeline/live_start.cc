@@ -12,6 +12,7 @@ namespace pliant {
 TrackOptions ForLiveInput(TrackOptions options) {
   if (options.live_input.frames != LiveFrames::kNewest) return options;
   options.max_frames_back = 0;
+  options.tracker.handover_waits = Switch::kOff;
   options.tracker.handover_frames = std::max(options.tracker.handover_frames, options.live_input.handover_frames);
   return options;
 }

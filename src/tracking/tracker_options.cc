@@ -52,6 +52,9 @@ void TrackerOptions::List(OptionTable& table) {
       "first maps and re-estimated maps are computed beside tracking and taken over after this many frames (those "
       "of a rigid scene that are refined: a third); 0: the frame in which a map is due waits for it",
       0, 1000);
+  table.AddChoice("handover_waits", &handover_waits,
+                  "a frame waits for such a map that is not there in time, so that results do not depend on how fast "
+                  "the machine is; off (live input of the newest images): it is taken over when it is there");
   table.Renamed("gauge_share", "common_motion_share");
   growth.List(table);
   relocalization.List(table);

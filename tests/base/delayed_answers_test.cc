@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -43,6 +44,24 @@ TEST_P(DelayedAnswersIn, ThatWereNotTakenInTimeAreTakenInTheirOrder) {
   EXPECT_EQ(answers.Take(3), 2);
   EXPECT_TRUE(answers.IsEmpty());
   EXPECT_EQ(answers.Take(3), std::nullopt);
+}
+
+TEST(DelayedAnswers, ThatAreLateAreTakenWhenTheyAreThere) {
+  DelayedAnswers<int> answers;
+  std::promise<void> goes_on;
+  answers.Ask(1, WorkPlace::kBeside, [&] {
+    goes_on.get_future().wait();
+    return 1;
+  });
+  answers.Ask(2, WorkPlace::kBeside, [] { return 2; });
+  EXPECT_EQ(answers.TakeIfThere(2), std::nullopt);
+  EXPECT_EQ(answers.size(), 2U);
+  goes_on.set_value();
+  std::optional<int> first;
+  while (!(first = answers.TakeIfThere(3))) std::this_thread::sleep_for(kSlow);
+  EXPECT_EQ(first, 1);
+  EXPECT_EQ(answers.TakeIfThere(1), std::nullopt);  // not due
+  EXPECT_EQ(answers.Take(3), 2);
 }
 
 TEST_P(DelayedAnswersIn, AreNotTakenOnceDropped) {

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Work that takes longer than one step of a loop: its answer is taken in a step that is fixed when it is asked for.
-// Whether it is there sooner does not matter, so that results do not depend on how fast the machine is.
+// Whether it is there sooner does not matter, so that results do not depend on how fast the machine is; where it is
+// later the step waits, or, where no step may, a later one takes it.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <future>
@@ -63,6 +66,16 @@ class DelayedAnswers {
 
   // Whether nothing was asked for that is not taken.
   bool IsEmpty() const { return asked_.empty(); }
+
+  // How many were asked for and are not taken.
+  std::size_t size() const { return asked_.size(); }
+
+  // The same as Take, but for an answer that is not there: nothing.
+  std::optional<Answer> TakeIfThere(int step) {
+    const bool is_there =
+        !asked_.empty() && asked_.front().answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    return is_there ? Take(step) : std::nullopt;
+  }
 
   // The oldest answer that is due in this step or was before, waited for; nothing: there is none.
   std::optional<Answer> Take(int step) {

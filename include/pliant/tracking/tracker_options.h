@@ -69,6 +69,9 @@ struct TrackerOptions {
   // After so many frames a map that was made beside tracking, the first or a re-estimated one, is taken over; 0: made
   // and taken over in the frame in which it is due, which waits for it.
   int handover_frames = 0;
+  // A frame waits for such a map that is not there in time, so that results do not depend on how fast the machine is;
+  // off: the map is taken over when it is there.
+  Switch handover_waits = Switch::kOn;
   // Of the frame numbers, SequenceRequest::stride: what is done every Nth frame is done every Nth that is tracked. Not
   // an option by itself.
   int frame_stride = 1;

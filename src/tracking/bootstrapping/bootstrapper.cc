@@ -16,8 +16,13 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kAskAlternativeEvery = 5;  // frames
+constexpr int kMaxLate = 2;                      // by handover_frames: later ones are not asked for
 // So many references of WindowInit.last_frame frames have the time to give a better map than a weak one.
 constexpr int kWeakReferences = 3;
+
+bool DecidesNothing(const InitOutcome& outcome) {
+  return outcome.decision == InitDecision::kWait && !outcome.ambiguous && !outcome.camera_may_stand_still;
+}
 
 }  // namespace
 
@@ -132,11 +137,20 @@ std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame
   }
   const auto step = static_cast<int>(frames_.size());
   const WorkPlace place = threads_ > 1 ? WorkPlace::kBeside : WorkPlace::kHere;
-  answers_.Ask(step + handover_frames_, place,
-               [this, frame, frames = frames_, known_depths = known_depths_, doubts = doubts_] {
-                 return AskInitializers(frames, {}, known_depths, doubts, frame, InitMoment::kMoreFollow, nullptr);
-               });
-  return answers_.Take(step);
+  if (answers_.size() < static_cast<std::size_t>(kMaxLate * handover_frames_))
+    answers_.Ask(step + handover_frames_, place,
+                 [this, frame, frames = frames_, known_depths = known_depths_, doubts = doubts_] {
+                   return AskInitializers(frames, {}, known_depths, doubts, frame, InitMoment::kMoreFollow, nullptr);
+                 });
+  if (options_.handover_waits == Switch::kOn) return answers_.Take(step);
+  auto answer = answers_.TakeIfThere(step);
+  // Where they are late more than one may be there. What an attempt says that decides nothing, the next one says.
+  while (answer && DecidesNothing(answer->outcome)) {
+    auto next = answers_.TakeIfThere(step);
+    if (!next) break;
+    answer = std::move(next);
+  }
+  return answer;
 }
 
 // Beside tracking it reads only what does not change. `alternative`: null: it is not asked.

@@ -62,7 +62,8 @@ void MapUpdater::Reestimate(const std::vector<InitFrame>& frames, WindowScene sc
 }
 
 void MapUpdater::TakeReestimations(Submap* submap, MapUpdate* update) {
-  while (const auto made = reestimations_.Take(updates_)) {
+  const bool waits = options_.handover_waits == Switch::kOn;
+  while (const auto made = waits ? reestimations_.Take(updates_) : reestimations_.TakeIfThere(updates_)) {
     if (made->scene == WindowScene::kRigid)
       TakeRigid(*made, submap, update);
     else
