@@ -6,12 +6,16 @@
 usage: live_overlay.py SOURCE CAMERA [--output_path FOLDER] [--frames N]
 
 SOURCE: what OpenCV opens, the number of a camera (0), an address, or a video; CAMERA: a calibration that Pliant reads.
+Every image of a video is tracked; of a camera or an address the newest one, and those that came meanwhile are left out.
 Pictures go into FOLDER, or without one into a window, which Esc closes. Needs python3-opencv.
 """
 
 import argparse
 import itertools
+import os
 import pathlib
+import queue
+import threading
 
 import cv2
 import numpy as np
@@ -23,15 +27,36 @@ EXAMPLES = 16  # images that choose the size in which points are tracked
 TRAIL = 10     # frames
 
 
-def images_of(source, most):
-    capture = cv2.VideoCapture(int(source) if source.isdigit() else source)
-    if not capture.isOpened():
-        raise SystemExit(f"cannot open {source}")
-    for _ in range(most):
+def all_images(capture):
+    while True:
         there, image = capture.read()
         if not there:
             return
         yield image
+
+
+def newest_images(capture):
+    newest = queue.Queue(maxsize=1)
+
+    def receive():
+        for image in itertools.chain(all_images(capture), [None]):
+            try:
+                newest.get_nowait()  # that was not asked for in time
+            except queue.Empty:
+                pass
+            newest.put(image)
+
+    threading.Thread(target=receive, daemon=True).start()
+    while (image := newest.get()) is not None:
+        yield image
+
+
+def images_of(source, most):
+    capture = cv2.VideoCapture(int(source) if source.isdigit() else source)
+    if not capture.isOpened():
+        raise SystemExit(f"cannot open {source}")
+    is_file = os.path.exists(source)
+    return is_file, itertools.islice((all_images if is_file else newest_images)(capture), most)
 
 
 def draw(image, report, trails):
@@ -69,9 +94,11 @@ def main():
     if arguments.output_path:
         arguments.output_path.mkdir(parents=True, exist_ok=True)
 
-    images = images_of(arguments.source, arguments.frames)
+    is_file, images = images_of(arguments.source, arguments.frames)
     examples = list(itertools.islice(images, EXAMPLES))
-    tracker = pliant.Tracker(pliant.read_camera(arguments.camera), examples=examples)
+    # A map is taken over so many frames after it was asked for, so that no frame waits for it.
+    options = {} if is_file else {"Tracking.handover_frames": 30}
+    tracker = pliant.Tracker(pliant.read_camera(arguments.camera), options, examples=examples)
     waiting, trails = {}, {}  # images whose report waits for a first map
 
     def show(reports):

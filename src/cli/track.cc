@@ -126,6 +126,8 @@ int Report(const RunSummary& summary, const TrackArguments& arguments) {
   if (summary.stream)
     SayResult("  " + std::to_string(summary.stream->skipped) + " of " + std::to_string(summary.stream->received) +
               " images that came were skipped; the others are in " + RecordingOf(arguments.output.path).string());
+  if (summary.stream && summary.stream->damaged > 0)
+    SayResult("  " + std::to_string(summary.stream->damaged) + " images that came could not be decoded");
   for (const auto& [topic, sentence] : TrustIn(summary)) SayResult("  " + topic + ": " + sentence);
   return kExitOk;
 }

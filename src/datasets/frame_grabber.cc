@@ -3,6 +3,7 @@
 
 #include "datasets/frame_grabber.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -25,9 +26,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kMostOfTheTimeout = 0.9;
 constexpr int kMaxDamaged = 100;  // packets in a row: a decoder says no more of one than of the stream's end
+constexpr int kMaxHeldBack = 64;  // images: those that are coded before earlier ones, and one a thread of a decoder
 constexpr auto kPauseOfDevice = std::chrono::milliseconds(20);
 constexpr double kMaxFps = 1000;  // rates from there on are the unit of the stream's times
 constexpr int kMaxDevice = 255;   // Video4Linux has no more
+
+double SecondsSince(Clock::time_point time) { return std::chrono::duration<double>(Clock::now() - time).count(); }
 
 Result<int> DeviceNumber(std::string_view source) {
   int number = -1;
@@ -123,16 +127,27 @@ std::optional<cv::Mat> FrameGrabber::Decode() {
   return std::nullopt;
 }
 
+// A decoder that waited in vain gives the images that it has held back, as if they had come, and then says no more than
+// one whose stream has ended.
 std::optional<cv::Mat> FrameGrabber::Grab() {
   const auto begin = Clock::now();
-  const auto waited_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   int damaged = 0;
   do {
-    if (auto image = Decode()) return image;
+    const auto asked = Clock::now();
+    auto image = Decode();
+    if (SecondsSince(asked) > kMostOfTheTimeout * timeout_s_) since_long_wait_ = 0;
+    if (image) {
+      damaged_ += is_device_ ? 0 : damaged;
+      since_long_wait_ = std::min(since_long_wait_ + 1, kMaxHeldBack + 1);
+      return image;
+    }
     if (is_device_) std::this_thread::sleep_for(kPauseOfDevice);
-  } while (!is_stopped_() && waited_s() < kMostOfTheTimeout * timeout_s_ && (is_device_ || ++damaged <= kMaxDamaged));
-  // A decoder that waited in vain says no more than one whose stream has ended. A camera has no end.
-  has_stalled_ = standard_input_ ? standard_input_->has_stalled() : waited_s() > kMostOfTheTimeout * timeout_s_;
+  } while (!is_stopped_() && SecondsSince(begin) < kMostOfTheTimeout * timeout_s_ &&
+           (is_device_ || ++damaged <= kMaxDamaged));
+  if (standard_input_)
+    has_stalled_ = standard_input_->has_stalled();
+  else  // a camera has no end
+    has_stalled_ = SecondsSince(begin) > kMostOfTheTimeout * timeout_s_ || since_long_wait_ <= kMaxHeldBack;
   return std::nullopt;
 }
 

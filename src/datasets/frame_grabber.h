@@ -4,6 +4,7 @@
 // One image after the other from a camera, a stream over the network or standard input, through OpenCV.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -26,7 +27,7 @@ class FrameGrabber {
                                                     const std::function<bool()>& is_stopped);
 
   // Waits for the next image, 8-bit BGR; nothing at the source's end, where it stalls, or before a change of size. What
-  // cannot be decoded is left out. To be called by one thread, as has_stalled and size_change.
+  // cannot be decoded is left out and counted. To be called by one thread, as all that follow.
   std::optional<cv::Mat> Grab();
   // Whether Grab has waited in vain, so that it gives nothing.
   bool has_stalled() const { return has_stalled_; }
@@ -34,6 +35,8 @@ class FrameGrabber {
   std::optional<JpegSizes::Change> size_change() const {
     return standard_input_ ? standard_input_->size_change() : std::nullopt;
   }
+  // What could not be decoded.
+  std::int64_t damaged() const { return damaged_; }
   // Images a second, where the source says it.
   std::optional<double> fps() const { return fps_; }
 
@@ -49,6 +52,8 @@ class FrameGrabber {
   std::function<bool()> is_stopped_;
   bool is_device_ = false;
   bool has_stalled_ = false;
+  std::int64_t damaged_ = 0;
+  int since_long_wait_ = 1 << 20;  // images since one, or the end, was waited for about as long as the time-out
 };
 
 }  // namespace pliant

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -157,6 +158,7 @@ void LiveSource::State::Receive() {
     std::optional<cv::Mat> image = grabber->Grab();
     std::unique_lock lock(mutex);
     const auto now = Clock::now();
+    counts.damaged = grabber->damaged();
     if (!image) break;
     if (!first_arrival) first_arrival = now;
     last_arrival = now;
@@ -243,7 +245,8 @@ void LiveInputOptions::List(OptionTable& table) {
 
 bool IsLiveSource(const fs::path& path) {
   constexpr std::array kBegins = {"device:", "rtsp://", "rtmp://", "http://", "https://", "udp://", "tcp://", "srt://"};
-  const std::string name = path.string();
+  std::string name = path.string();
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return name == "-" || std::ranges::any_of(kBegins, [&](const char* begin) { return name.starts_with(begin); });
 }
 

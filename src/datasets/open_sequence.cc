@@ -3,6 +3,7 @@
 
 #include "pliant/datasets/open_sequence.h"
 
+#include <string_view>
 #include <utility>
 
 #include "datasets/formats.h"
@@ -12,6 +13,8 @@ namespace pliant {
 
 namespace {
 
+constexpr std::string_view kVideoDevice = "/dev/video";
+
 Result<const DataSetFormat*> FormatAt(const std::filesystem::path& path) {
   std::error_code error;
   if (path.empty() || !std::filesystem::exists(path, error))
@@ -19,6 +22,8 @@ Result<const DataSetFormat*> FormatAt(const std::filesystem::path& path) {
                                             "'; give a folder of images, a video or a sequence");
   for (const DataSetFormat& format : DataSetFormats())
     if (format.is_at(path)) return &format;
+  if (const std::string name = path.string(); name.starts_with(kVideoDevice))
+    return Status(ErrorCode::kUnreadable, name + " is a camera; write device:" + name.substr(kVideoDevice.size()));
   return Status(ErrorCode::kUnreadable, path.string() +
                                             " is neither a folder nor a file; give a folder of images, "
                                             "a video or a sequence");

@@ -109,7 +109,8 @@ Json LatencyJson(const RunSummary& summary) {
 
 Json StreamJson(const RunSummary& summary) {
   if (!summary.stream) return {};
-  return {{"received", summary.stream->received}, {"skipped", summary.stream->skipped}};
+  const StreamCounts& stream = *summary.stream;
+  return {{"received", stream.received}, {"skipped", stream.skipped}, {"damaged", stream.damaged}};
 }
 
 Json MediansJson(const RunSummary& summary) {
@@ -219,7 +220,8 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     if (const Json map = json.value("first_map", Json()); summary.first_maps.empty() && !map.is_null())
       summary.first_maps.push_back(ReadFirstMap(map));
     if (const Json stream = json.value("stream", Json()); !stream.is_null())
-      summary.stream = {stream.at("received").get<std::int64_t>(), stream.at("skipped").get<std::int64_t>()};
+      summary.stream = {stream.at("received").get<std::int64_t>(), stream.at("skipped").get<std::int64_t>(),
+                        stream.value("damaged", std::int64_t{0})};
     if (const Json medians = json.value("medians", Json()); !medians.is_null()) {
       summary.median_reprojection_error_px = medians.at("reprojection_error_px").get<double>();
       summary.median_coverage = medians.at("coverage").get<double>();

@@ -48,12 +48,13 @@ constexpr int kCombSide_px = 1024;
 // With which sizes are compared. At the source's own noise all large sizes would lose.
 constexpr double kSmoothingOfSizes_px = 0.7;
 
-// One a run.
+// One a run; fewer where `watch` is stopped.
 std::vector<Trackability> Measure(const std::vector<ImageRun>& runs, const WorkingImage& working,
-                                  const TrackOptions& options) {
+                                  const TrackOptions& options, const ImageWatch& watch) {
   std::vector<Trackability> measured;
   const TrackerOptions tracker = WorkingOptions(options.tracker, working);
   for (const ImageRun& run : runs) {
+    if (watch.IsStopped()) break;
     std::vector<PreparedFrame> frames;
     for (const SequenceFrame& frame : run) frames.push_back(PrepareWorkingFrame(frame, working, tracker));
     measured.push_back(MeasureTrackability(frames, tracker, options.threads));
@@ -85,8 +86,9 @@ bool IsInterlaced(const std::vector<ImageRun>& runs, const ImageOptions& options
 // Of working images, some of which are asked for more than once.
 class Measurements {
  public:
-  // Both have to outlive this.
-  Measurements(const std::vector<ImageRun>& runs, const TrackOptions& options) : runs_(runs), options_(options) {}
+  // All have to outlive this.
+  Measurements(const std::vector<ImageRun>& runs, const TrackOptions& options, const ImageWatch& watch)
+      : runs_(runs), options_(options), watch_(watch) {}
 
   int Alive(const WorkingImage& working) { return SumOf(Of(working), &Trackability::alive); }
   // In px of the source.
@@ -97,11 +99,12 @@ class Measurements {
     const auto known =
         std::ranges::find(measured_, working, &std::pair<WorkingImage, std::vector<Trackability>>::first);
     if (known != measured_.end()) return known->second;
-    return measured_.emplace_back(working, Measure(runs_, working, options_)).second;
+    return measured_.emplace_back(working, Measure(runs_, working, options_, watch_)).second;
   }
 
   const std::vector<ImageRun>& runs_;
   const TrackOptions& options_;
+  const ImageWatch& watch_;
   std::vector<std::pair<WorkingImage, std::vector<Trackability>>> measured_;
 };
 
@@ -116,7 +119,7 @@ cv::Mat ThumbnailOf(const cv::Mat& image) {
 }
 
 // How many images there are before the first one that shows a view; 0 where the first ones do, or none does.
-int CountLeadIn(const SequenceRequest& request) {
+int CountLeadIn(const SequenceRequest& request, const ImageWatch& watch) {
   constexpr int kShortest = 15;
   constexpr int kLongest = 900;
   constexpr double kDark = 12.0;   // gray levels: the brightest of a black image with noise
@@ -128,9 +131,10 @@ int CountLeadIn(const SequenceRequest& request) {
   if (!sequence.ok()) return 0;
   cv::Mat before;
   std::vector<int> changes;
-  for (int k = 0; k < kLongest; ++k) {
+  for (int k = 0; k < kLongest && !watch.IsStopped(); ++k) {
     const auto next = (*sequence)->Next();
     if (!next.ok() || !next->has_value()) return 0;
+    if (k == 0 && watch.on_first) watch.on_first(**next);
     const cv::Mat now = ThumbnailOf((*next)->image);
     double brightest = 0;
     cv::minMaxLoc(now, nullptr, &brightest);
@@ -158,9 +162,9 @@ WorkingImage FirstAsGoodAsTheBest(const std::vector<WorkingImage>& candidates, M
 
 }  // namespace
 
-std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& of_all) {
+std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& of_all, const ImageWatch& watch) {
   SequenceRequest request = of_all;
-  request.start += CountLeadIn(of_all) * request.stride;
+  request.start += CountLeadIn(of_all, watch) * request.stride;
   auto sequence = OpenSequence(request);
   if (!sequence.ok()) return {};
   std::vector<ImageRun> runs(kRuns);
@@ -172,6 +176,8 @@ std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& of_all) {
     if (bytes + bytes_of_one > kMaxImageBytes) break;
     auto next = (*sequence)->Next();
     if (!next.ok() || !next->has_value()) break;
+    if (watch.IsStopped()) return {};
+    if (k == 0 && request.IsLive() && watch.on_first) watch.on_first(**next);
     if (k % kRunDistance >= kRunFrames) continue;
     bytes_of_one = static_cast<double>((*next)->image.total() * (*next)->image.elemSize());
     bytes += bytes_of_one;
@@ -180,7 +186,8 @@ std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& of_all) {
   return runs;
 }
 
-WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOptions& options) {
+WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOptions& options,
+                                const ImageWatch& watch) {
   const bool follows_in_source = options.FollowsInSource();
   const WorkingImage as_read{.interlaced = !follows_in_source && IsInterlaced(runs, options.image)};
   WorkingImage fixed = as_read;
@@ -191,7 +198,7 @@ WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOp
   const auto pixels = static_cast<double>(runs.front().front().image.total());
   if (pixels > kMaxPixels) return {.scale = std::sqrt(kMaxPixels / pixels), .interlaced = as_read.interlaced};
   if (runs.front().size() < 2) return as_read;
-  const std::vector<Trackability> measured = Measure(runs, as_read, options);
+  const std::vector<Trackability> measured = Measure(runs, as_read, options, watch);
   const int corners = SumOf(measured, &Trackability::corners);
   if (corners >= kMinAlive && SumOf(measured, &Trackability::alive) >= kLastingShare * corners) return as_read;
   const cv::Size source = runs.front().front().image.size();
@@ -201,7 +208,7 @@ WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOp
     if (scale == 1 || (side >= kMinSide_px && side <= kMaxSide_px))
       sizes.push_back({scale, kSmoothingOfSizes_px, kNoisyPatchScale, as_read.interlaced});
   }
-  Measurements measurements(runs, options);
+  Measurements measurements(runs, options, watch);
   const WorkingImage size = FirstAsGoodAsTheBest(sizes, &measurements);
   std::vector<WorkingImage> smoothings;
   for (const double smoothing_px : kSmoothings_px)

@@ -8,7 +8,6 @@
 
 #include <opencv2/core.hpp>
 
-#include "pipeline/choose_working_image.h"
 #include "pipeline/cloud_depth.h"
 #include "pipeline/working_frame.h"
 #include "pliant/base/options.h"
@@ -61,12 +60,13 @@ bool HasDepth(const SequenceRequest& request, const Sequence& sequence) {
   return false;
 }
 
-// Of the runs that are long enough.
+// Of the runs that are long enough; of fewer where `watch` is stopped.
 ImageStatistics MeasureImages(const std::vector<ImageRun>& runs, const WorkingImage& working,
-                              const TrackOptions& options) {
+                              const TrackOptions& options, const ImageWatch& watch) {
   std::vector<RunMeasurement> measured;
   const TrackerOptions tracker = WorkingOptions(options.tracker, working);
   for (const ImageRun& run : runs) {
+    if (watch.IsStopped()) break;
     if (std::ssize(run) < kStatisticsRunFrames) continue;
     std::vector<PreparedFrame> frames;
     for (int k = 0; k < kStatisticsRunFrames; ++k)
@@ -100,16 +100,19 @@ void Append(std::vector<std::string> more, std::vector<std::string>* warnings) {
 
 }  // namespace
 
-Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence) {
+Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence,
+                           const ImageWatch& watch) {
   const InitOptions& init = options.tracker.init;
   RunStart start;
   if (Status status = ReadTracks(request, options, &start); !status.ok()) return status;
-  const std::vector<ImageRun> runs = options.FollowsInSource() ? std::vector<ImageRun>() : ReadFirstRuns(request.input);
-  start.working_image = ChooseWorkingImage(runs, options);
+  const std::vector<ImageRun> runs =
+      options.FollowsInSource() ? std::vector<ImageRun>() : ReadFirstRuns(request.input, watch);
+  start.working_image = ChooseWorkingImage(runs, options, watch);
   if (start.working_image.interlaced && options.image.interlaced == Interlacing::kMeasured)
     start.warnings.push_back(
         "the images are interlaced, and their odd rows are of another time: they are not used (Image.interlaced)");
-  start.images = MeasureImages(runs, start.working_image, options);
+  start.images = MeasureImages(runs, start.working_image, options, watch);
+  if (watch.IsStopped()) return Status(ErrorCode::kInterrupted, "stopped on request before the first frame");
   auto camera = sequence.camera().Resized(start.working_image.scale);
   if (!camera.ok()) return camera.status();
   start.working_camera = *std::move(camera);

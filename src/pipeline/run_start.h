@@ -10,6 +10,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "pipeline/choose_working_image.h"
 #include "pipeline/model_start.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
@@ -35,7 +36,8 @@ struct RunStart {
 };
 
 // Fails where the sequence has not what Init.method asks for, and as the readers of tracks, models and clouds do, and
-// where a camera cannot be resized.
-Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence);
+// where a camera cannot be resized; with kInterrupted where `watch` is stopped.
+Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence,
+                           const ImageWatch& watch);
 
 }  // namespace pliant

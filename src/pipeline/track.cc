@@ -30,6 +30,7 @@ namespace {
 struct Ending {
   RunStatus status = RunStatus::kCompleted;
   std::string note;
+  bool came_without_map = false;  // the sequence's end
 };
 
 RunColumns ColumnsOfFrames(const TrackerExtensions& extensions) {
@@ -57,7 +58,7 @@ Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note
     return {RunStatus::kLost, "after frame " + last_tracked + "; in the sequence's last frame: " + last_note};
   if (frames == 1)
     return {RunStatus::kFailed, "one frame is not enough for a map; give two or more, between which the camera moved"};
-  return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note + other_starts};
+  return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note + other_starts, true};
 }
 
 // Of the frames so far, for what is said at the end.
@@ -275,6 +276,12 @@ Result<std::unique_ptr<TrackingTruth>> TruthOf(const TrackOptions& options, cons
   return OpenSimulationTruth(request.input.image_path, sequence);
 }
 
+// The images of a live source end when they are to be stopped, and with a map such a run is complete.
+Ending OfStopped(Ending ending) {
+  if (ending.came_without_map) ending = {RunStatus::kInterrupted, "stopped on request; " + ending.note};
+  return ending;
+}
+
 // `live`: null for files. What could not be recorded is not found out later.
 RunSummary FinishRun(RunWriter& writer, LiveSource* live, Ending ending) {
   if (live != nullptr) {
@@ -358,7 +365,12 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   const auto truth = TruthOf(options, request, **sequence);
   if (!truth.ok()) return truth.status();
 
-  const auto start = ReadStart(request, usable, **sequence);
+  const ImageWatch watch{[&](const SequenceFrame& first) {
+                           if (checkpoint) return;
+                           for (TrackObserver* observer : observers) observer->OnImage(first.frame_idx, first.image);
+                         },
+                         given.stop};
+  const auto start = ReadStart(request, usable, **sequence, watch);
   if (!start.ok()) return start.status();
   if (const Status begun = PassOldImages(options, *start, &request.input, &*sequence); !begun.ok()) return begun;
   usable.tracker = WorkingOptions(std::move(usable.tracker), start->working_image);
@@ -379,10 +391,11 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
     checkpoint.reset();
   }
   for (TrackObserver* observer : observers) observer->OnStart(std::max(frames, 0));
-  const Ending ending = loop.Run();
+  Ending ending = loop.Run();
+  if (live && watch.IsStopped()) ending = OfStopped(std::move(ending));
   TellOfImages(checked, observers, &warnings);
   writer->SetWarnings(std::move(warnings));
-  return FinishRun(*writer, live.get(), ending);
+  return FinishRun(*writer, live.get(), std::move(ending));
 }
 
 }  // namespace pliant

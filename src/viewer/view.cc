@@ -142,6 +142,19 @@ void Align(const FramePoses& truth, View* view) {
         "maps that were not merged are shown one after the other: each begins where the one before it ended");
 }
 
+// Of a run that was killed while its images arrived, the last ones may not have been recorded.
+void DropUnrecorded(const Sequence& recording, ViewedRun* run, std::vector<std::string>* notes) {
+  const auto is_recorded = [&](const ViewedFrame& frame) {
+    return recording.TimestampS(frame.row.frame_idx).has_value();
+  };
+  const auto first = std::ranges::find_if_not(run->frames, is_recorded);
+  const auto count = std::distance(first, run->frames.end());
+  if (count == 0 || first == run->frames.begin() || std::any_of(first, run->frames.end(), is_recorded)) return;
+  run->frames.erase(first, run->frames.end());
+  notes->push_back("the last " + std::to_string(count) + " frames of the run " + run->name +
+                   " have no images in its sequence, which was cut off; they are not shown");
+}
+
 }  // namespace
 
 void ViewOptions::List(OptionTable& table) {
@@ -193,6 +206,7 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options, co
     ViewedRun& run = read->run;
     run.meshes = std::move((*meshes)[view.runs.size()]);
     view.notes.insert(view.notes.end(), read->notes.begin(), read->notes.end());
+    if (sequence && !named) DropUnrecorded(*sequence->sequence, &run, &view.notes);
     const Status fits = sequence ? CheckBelongsTo(FramesOf(run), *sequence->sequence, {}) : Status::Ok();
     if (!fits.ok() && named) return fits;
     if (!fits.ok()) view.notes.push_back("the run " + run.name + " is not compared with the truth: " + fits.message());

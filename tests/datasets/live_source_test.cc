@@ -60,7 +60,7 @@ class LiveSourceTest : public SequenceFiles {
 };
 
 TEST(IsLiveSource, TellsAddressesFromFiles) {
-  for (const char* live : {"-", "device:0", "rtsp://10.0.0.2/stream", "http://host:8080/video", "udp://@:1234"})
+  for (const char* live : {"-", "device:0", "rtsp://10.0.0.2/stream", "http://host:8080/video", "HTTP://host/a", "udp://@:1234"})
     EXPECT_TRUE(IsLiveSource(live)) << live;
   for (const char* file : {"", "clip.mp4", "device", "/dev/video0", "http", "folder/-", "./-"})
     EXPECT_FALSE(IsLiveSource(file)) << file;

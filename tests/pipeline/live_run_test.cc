@@ -80,22 +80,28 @@ TEST_F(LiveRun, OfEveryImageEqualsTheRunOfItsRecording) {
     EXPECT_EQ(folder_.Read(std::string("live/") + file), folder_.Read(std::string("again/") + file)) << file;
 }
 
+// When it is shown an image.
+class StopAt final : public TrackObserver {
+ public:
+  StopAt(int frame_idx, std::atomic<bool>* stop) : frame_idx_(frame_idx), stop_(*stop) {}
+  void OnStart(int /*frames*/) override { has_started_ = true; }
+  void OnFrame(const FrameReport& /*report*/) override {}
+  void OnImage(int frame_idx, const cv::Mat& /*image*/) override {
+    if (frame_idx == frame_idx_) stop_ = true;
+  }
+  bool has_started() const { return has_started_; }
+
+ private:
+  int frame_idx_;
+  std::atomic<bool>& stop_;
+  bool has_started_ = false;
+};
+
 TEST_F(LiveRun, ThatIsStoppedEndsLikeASequence) {
   PipedVideo pipe;
   std::thread sender([&] { Send(pipe); });  // and no end
   std::atomic<bool> stop = false;
-  class StopAfterTen final : public TrackObserver {
-   public:
-    explicit StopAfterTen(std::atomic<bool>* stop) : stop_(*stop) {}
-    void OnStart(int /*frames*/) override {}
-    void OnFrame(const FrameReport& /*report*/) override {}
-    void OnImage(int frame_idx, const cv::Mat& /*image*/) override {
-      if (frame_idx == 9) stop_ = true;
-    }
-
-   private:
-    std::atomic<bool>& stop_;
-  } observer(&stop);
+  StopAt observer(9, &stop);
   RunRequest request = RequestOf("-", "stopped");
   request.input.camera_path = folder_.Path("camera.yaml");
   request.stop = &stop;
@@ -104,9 +110,28 @@ TEST_F(LiveRun, ThatIsStoppedEndsLikeASequence) {
   pipe.GiveUp();
   sender.join();
   ASSERT_TRUE(summary.ok()) << summary.status().message();
-  EXPECT_NE(summary->status, RunStatus::kInterrupted);
+  EXPECT_EQ(summary->status, RunStatus::kInterrupted);  // there is no map yet
+  EXPECT_THAT(summary->note, testing::HasSubstr("stopped on request"));
   EXPECT_GE(summary->frames_read, 10);
   EXPECT_LT(summary->frames_read, std::ssize(Rendered().frames));
+}
+
+TEST_F(LiveRun, ShowsItsFirstImageAndIsStoppedBeforeItsImagesAreMeasured) {
+  PipedVideo pipe;
+  std::thread sender([&] { Send(pipe); });
+  std::atomic<bool> stop = false;
+  StopAt observer(0, &stop);
+  options_.image.working = WorkingImageMode::kMeasured;
+  RunRequest request = RequestOf("-", "stopped");
+  request.input.camera_path = folder_.Path("camera.yaml");
+  request.stop = &stop;
+  TrackObserver* const observers[] = {&observer};
+  const auto summary = RunTrack(request, options_, observers);
+  pipe.GiveUp();
+  sender.join();
+  EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted);
+  EXPECT_FALSE(observer.has_started());
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("stopped")));
 }
 
 }  // namespace

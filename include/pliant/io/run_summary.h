@@ -100,6 +100,7 @@ struct RunDescription {
 struct StreamCounts {
   std::int64_t received = 0;
   std::int64_t skipped = 0;  // of those: newer ones had come
+  std::int64_t damaged = 0;  // not among those: they could not be decoded
 };
 
 // Of frames, from arrival until everything was done that a frame asked for, in milliseconds.

@@ -120,8 +120,9 @@ class TrackObserver {
   virtual void OnWarning(const std::string& /*sentence*/) {}
   // The sequence's camera, before OnStart.
   virtual void OnCamera(const Camera& /*camera*/) {}
-  // Before a frame is tracked; once more where tracking went back to a provisional map. The image is 8-bit with one or
-  // three (BGR) channels; it is not written to any more, so that it may be kept.
+  // Before a frame is tracked; once more where tracking went back to a provisional map; and the first one that is read,
+  // before all others and OnStart. The image is 8-bit with one or three (BGR) channels; it is not written to any more,
+  // so that it may be kept.
   virtual void OnImage(int /*frame_idx*/, const cv::Mat& /*image*/) {}
   // After a frame's rows are on disk: once a frame, in order of time. A later report's `merge` may move it into another
   // world; the run folder has it there in the end.
@@ -133,7 +134,7 @@ class TrackObserver {
 
 // Runs the tracker over the sequence. Fails when there is nothing to run on: options that contradict each other
 // (CheckTrackOptions), an input that cannot be opened, an output that cannot be made, a checkpoint that is damaged or
-// of another run. Once frames are read the answer is a summary, whose status and note say how the run ended:
+// of another run; with kInterrupted where `stop` becomes true before the first frame. Once frames are read the answer is a summary, whose status and note say how the run ended:
 //   completed    at the sequence's end            lost    too few points (the note says in which frame)
 //   interrupted  `stop` became true               failed  an image could not be read, a row not be written, or the
 //                                                         sequence ended without a first map
