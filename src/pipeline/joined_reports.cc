@@ -16,6 +16,7 @@ FrameReport JoinedReports::Report(std::size_t part_idx, int frame_idx, std::vect
   const RunFrame& frame = *part.frames.at(frame_idx);
   FrameReport report = ReportOf(frame, part.known);
   report.submap = submap_;
+  report.latency_ms = frame.latency_ms;
   if (!HasPose(frame.state)) return report;
   const RunPose& pose = *part.poses.at(frame_idx);
   const PlacedSubmap& placed = joiner_.PlaceOf({part_idx, pose.submap});

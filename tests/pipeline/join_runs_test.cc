@@ -52,6 +52,7 @@ struct PartOfTruth {
   std::string input = "film";
   std::optional<bool> metric = {};
   std::optional<int> declared = {};  // the frame in which its map was made
+  double latency_ms = 0;             // of each frame
 };
 
 const Sim3 kOther = {2.0, Eigen::Quaterniond(RotationExp({0.3, -0.8, 0.4})), Eigen::Vector3d(5, -7, 11)};
@@ -112,6 +113,7 @@ class JoinRunsTest : public testing::Test {
     report.frame_idx = frame;
     report.name = std::to_string(frame) + ".png";
     report.timestamp_s = frame / 25.0;
+    report.latency_ms = part.latency_ms;
     report.state = TrackingState::kLost;
     if (part.lost.contains(frame)) return report;
     report.state = TrackingState::kTracking;
@@ -253,6 +255,21 @@ TEST_F(JoinRunsTest, AMapThatWasJoinedIsDeclaredOnce) {
   const auto joined = Join();
   ASSERT_TRUE(joined.ok()) << joined.status().message();
   EXPECT_EQ(joined->run.first_maps.size(), 1U);
+}
+
+TEST_F(JoinRunsTest, FramesKeepTheirLatencyAlsoWithoutAPose) {
+  Write({.name = "first", .first = 0, .end = 12, .lost = {2}, .latency_ms = 20});
+  Write({.name = "second", .first = 8, .end = 20, .world_from_truth = kOther, .first_id = 1000, .latency_ms = 30});
+  const auto joined = Join();
+  ASSERT_TRUE(joined.ok()) << joined.status().message();
+  const auto run = ReadRun(folder_.Path("joined"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  ASSERT_EQ(run->frames.size(), 20U);
+  for (const int frame : {0, 2}) EXPECT_EQ(run->frames[static_cast<std::size_t>(frame)].latency_ms, 20) << frame;
+  EXPECT_EQ(run->frames[19].latency_ms, 30);
+  ASSERT_TRUE(joined->run.latency.has_value());
+  EXPECT_EQ(joined->run.latency->max, 30);
+  EXPECT_EQ(joined->run.latency->p50, 25);  // the middle of the overlap is that of the frames
 }
 
 TEST_F(JoinRunsTest, MillimetersStayMillimeters) {
