@@ -347,8 +347,11 @@ def figure(figures, metric):
     """The figure of a metric, as printed; None where there is none."""
     if metric.get("sequence", figures["sequence"]) != figures["sequence"]:
         return None
+    keys = metric.get("figure", "").split("/")
+    if keys[0] == "survival" and not (figures.get("survival") or {}).get("tracks"):
+        return None  # of points: there are none in a camera path alone, and without a map
     value = figures
-    for key in metric.get("figure", "").split("/"):
+    for key in keys:
         value = value.get(key) if isinstance(value, dict) else None
     return None if value is None else metric.get("factor", 1) * value
 

@@ -125,6 +125,24 @@ def benchmark_windows(_folder):
     assert [round(row[3], 9) for row in motion] == [0, 1, 0, 1], motion
 
 
+def benchmark_camera_path_alone(_folder):
+    """A system without points has no figures of points: not 0, neither in its row nor in a mean."""
+    protocol = benchmarks.read_protocol("c3vd_v2_deformation")
+    def rows(name, tracks):
+        return {"sequence": name, "trajectory": {"ate_mean_mm": 0.5, "ate_rmse_mm": 0.6},
+                "survival": {"mean_points": 20.0 * tracks, "mean_track_length": 3.0 * tracks, "tracks": tracks}}
+
+    path, points = rows("a", 0), rows("b", 2)
+    (alone, both), = tables(benchmarks.summary_table(
+        protocol, [("Path", "-", [path]), ("Some", "-", [path, points])], 2))
+    length = "mean track length, frames"
+    assert (alone["ATE mean, mm"], alone["points a frame"], alone[length]) == ("0.50", "-", "-"), alone
+    assert (both["points a frame"], both[length], both["sequences"]) == ("40", "6.0", "2 of 2"), both
+    no_map = {"sequence": "c", "trajectory": None, "survival": path["survival"]}
+    (row,), = tables(benchmarks.summary_table(protocol, [("Pliant", "images", [no_map])], 1))
+    assert (row["points a frame"], row["sequences"]) == ("-", "0 of 1"), row
+
+
 def benchmark_rectified_axes(folder):
     """The poses of the camera as built, in the axes of the rectified one."""
     turn = miniatures.matrix([0, 0, 0, 0, math.sin(0.1), 0, math.cos(0.1)])
@@ -374,6 +392,6 @@ def benchmark_complaints(folder):
     assert (folder / "out/runs/cecum_t1_b/track.log").read_text(), "the log says why"
 
 
-main(benchmark_protocols, benchmark_windows, benchmark_rectified_axes, benchmark_poses, benchmark_c3vd,
-     benchmark_c3vd_others, benchmark_endoslam, benchmark_scared, benchmark_stereomis, benchmark_stir,
+main(benchmark_protocols, benchmark_windows, benchmark_camera_path_alone, benchmark_rectified_axes, benchmark_poses,
+     benchmark_c3vd, benchmark_c3vd_others, benchmark_endoslam, benchmark_scared, benchmark_stereomis, benchmark_stir,
      benchmark_labels, benchmark_complaints)
