@@ -93,25 +93,29 @@ Result<TrackFile> ReadTrackCsv(const std::string& path) {
   return file;
 }
 
+bool IsWhole(const Eigen::Vector2d& pixel) { return pixel == pixel.array().round().matrix(); }
+
 // What all forms have in common.
 Status CheckPixels(const std::string& path, TrackFile* file) {
   bool seen = false;
   bool whole = true;
+  bool half = true;  // rounded to whole pixels whose first one's center is not at 0
   for (const PixelTrack& track : file->tracks)
     for (const TrackPixel& pixel : track.pixels) {
       if (!pixel.visible) continue;
       seen = true;
-      whole = whole && pixel.pixel == pixel.pixel.array().round().matrix();
+      whole = whole && IsWhole(pixel.pixel);
+      half = half && IsWhole(pixel.pixel - Eigen::Vector2d(0.5, 0.5));
     }
   if (!seen)
     return {ErrorCode::kInsufficient, Quoted(path) + " has no point that is seen in a frame" +
                                           (file->tracks.empty() ? ": it has no track"
                                            : file->frames       ? ": all of its visibility is False"
                                                                 : "")};
-  if (whole)
-    file->notes.push_back("the pixels in " + Quoted(path) +
-                          " are whole numbers: rounded pixels are off by 0.29 px, root mean square; give fractions "
-                          "where the tracker has them");
+  if (whole || half)
+    file->notes.push_back("the pixels in " + Quoted(path) + " are whole numbers" + (half ? " and a half" : "") +
+                          ": rounded pixels are off by 0.29 px, root mean square; give fractions where the tracker "
+                          "has them");
   return Status::Ok();
 }
 

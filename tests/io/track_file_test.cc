@@ -148,6 +148,15 @@ TEST(TrackFile, WholePixelsAreReadAndSaid) {
   }
 }
 
+TEST(TrackFile, PixelsThatWereRoundedAreSaidAlsoHalfAPixelFromWholeNumbers) {
+  const TestFolder folder;
+  const TrackFile rounded = Read(folder.Write("a.csv", "frame,track_id,u_px,v_px\n0,0,1.5,2.5\n0,1,3.5,7.5\n"));
+  ASSERT_THAT(rounded.notes, SizeIs(1));
+  EXPECT_THAT(rounded.notes[0], HasSubstr("are whole numbers and a half: rounded pixels are off by 0.29 px"));
+  for (const char* rows : {"0,0,1.5,2.5\n0,1,3,7\n", "0,0,1.5,2.5\n0,1,3.5,7.25\n", "0,0,1.5,2\n0,1,3.5,7\n"})
+    EXPECT_THAT(Read(folder.Write("a.csv", std::string("frame,track_id,u_px,v_px\n") + rows)).notes, IsEmpty()) << rows;
+}
+
 TEST(TrackFile, ThatIsWrittenIsReadAgain) {
   const TestFolder folder;
   const std::vector<PixelTrack> tracks = {{PointId{3}, {{0, {1.5, 2.25}}, {2, {3.125, 4}, 0, false}, {4, {5, 6.5}}}},
