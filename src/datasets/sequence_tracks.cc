@@ -162,9 +162,9 @@ Result<SequenceTracks> ReadTracksOfSequence(const TrackFileOptions& options, con
   std::erase_if(tracks.tracks,
                 [](const PixelTrack& track) { return std::ranges::none_of(track.pixels, &TrackPixel::visible); });
   if (tracks.tracks.empty())
-    return Status(ErrorCode::kInsufficient,
-                  Quoted(options.path) + " has no pixel in the image with a sigma_px of TrackFile.max_sigma_px (" +
-                      FormatDouble(options.max_sigma_px) + ") or less");
+    return Status(ErrorCode::kInsufficient, "no pixel of the tracks in " + Quoted(options.path) +
+                                                " is in the image with a sigma_px of TrackFile.max_sigma_px (" +
+                                                FormatDouble(options.max_sigma_px) + ") or less");
   return tracks;
 }
 

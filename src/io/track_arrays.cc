@@ -11,6 +11,7 @@
 
 #include "io/npy.h"
 #include "pliant/base/files.h"
+#include "pliant/base/options.h"
 #include "pliant/base/text.h"
 
 namespace pliant {
@@ -60,14 +61,22 @@ Status CheckBeside(const std::string& path, const std::string& name, const NpyAr
                                       "; it has to be (frames, points)"};
 }
 
+// Of scores nobody says from which value on a point is seen.
+Status CheckVisibility(const std::string& path, const NpyArray& visibility) {
+  if (visibility.kind != NpyArray::Kind::kFloat) return Status::Ok();
+  for (std::size_t i = 0; i < visibility.size(); ++i)
+    if (const double value = visibility.At(i); value != 0.0 && value != 1.0)
+      return {ErrorCode::kUnreadable, "visibility in " + path + " has the value " + FormatDouble(value) +
+                                          ", which is neither 0 nor 1; save bools, for example visibility > 0.5"};
+  return Status::Ok();
+}
+
 Status CheckArrays(const std::string& path, const TrackArrays& arrays) {
   if (Status status = CheckTracks(path, *arrays.tracks); !status.ok()) return status;
   if (arrays.visibility != nullptr) {
-    if (arrays.visibility->kind == NpyArray::Kind::kFloat)
-      return {ErrorCode::kUnreadable,
-              "visibility in " + path + " has numbers with a fraction; save bools, for example visibility > 0.5"};
     if (Status status = CheckBeside(path, "visibility", *arrays.tracks, *arrays.visibility); !status.ok())
       return status;
+    if (Status status = CheckVisibility(path, *arrays.visibility); !status.ok()) return status;
   }
   if (arrays.sigma_px != nullptr)
     if (Status status = CheckBeside(path, "sigma_px", *arrays.tracks, *arrays.sigma_px); !status.ok()) return status;

@@ -74,6 +74,9 @@ TEST(TrackFile, OfEveryFormIsRead) {
         folder.Write("bytes.npz",
                      Npz(NpyFile("<f8", "3, 2, 2", BytesOf(std::vector<double>(kPixels.begin(), kPixels.end()))),
                          NpyFile("|u1", "3, 2", kVisible))),
+        folder.Write(
+            "floats.npz",
+            Npz(Tracks(), NpyFile("<f4", "3, 2", BytesOf(std::vector<float>(kVisible.begin(), kVisible.end()))))),
         folder.Write("tracks.csv",
                      "frame,track_id,u_px,v_px\n0,0,1.5,2.25\n0,1,10,20\n1,0,3.5,4.25\n2,0,5.5,6.25\n"
                      "2,1,14,24"),
@@ -227,7 +230,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongTracks{"WrongShape", "a.npz", Npz(TracksAs("<f4", "3, 4"), Visibility()), "have the shape (3, 4)"},
         WrongTracks{"ThreeCoordinates", "a.npz", Npz(TracksAs("<f4", "2, 2, 3"), Visibility()), "(frames, points, 2)"},
         WrongTracks{"OtherVisibility", "a.npz", Npz(Tracks(), NpyFile("|b1", "2, 3", kVisible)), "visibility in"},
-        WrongTracks{"FloatVisibility", "a.npz", Npz(Tracks(), NpyFile("<f4", "3, 2", BytesOf(kPixels))), "save bools"},
+        WrongTracks{"ScoresAsVisibility", "a.npz",
+                    Npz(Tracks(), NpyFile("<f8", "3, 2", BytesOf<double>({1, 1, 1, 0, 0.25, 1}))),
+                    "has the value 0.25, which is neither 0 nor 1; save bools"},
         WrongTracks{"BigEndian", "a.npz", Npz(TracksAs(">f4", "3, 2, 2"), Visibility()), "is big-endian"},
         WrongTracks{"HalfPrecision", "a.npz", Npz(TracksAs("<f2", "3, 2, 2"), Visibility()), "of the type <f2"},
         WrongTracks{"Objects", "a.npy", TracksAs("|O", "3, 2, 2"), "holds Python objects"},

@@ -47,6 +47,7 @@ class Arrays(TestCase):
         np.savez(self.folder / "plain.npz", tracks=self.pair[0], visibility=self.pair[1])
         plain = self.track("plain", self.folder / "plain.npz")
         self.same(self.track("pair", self.pair), plain)
+        self.same(self.track("floats", (self.pair[0], self.pair[1].astype(float))), plain)
         self.same(self.track("batch", [self.pair[0][None], self.pair[1][None]]), plain)  # as CoTracker gives them
         self.same(self.track("corner", (np.float64(self.pair[0]) + 0.5, self.pair[1]), tracks_pixel_origin="corner"),
                   plain)
@@ -109,7 +110,10 @@ class Arrays(TestCase):
                 (pliant.Error, "(points, frames, 2) is to be transposed", (turned, np.ascontiguousarray(seen.T))),
                 (pliant.Error, "frames and the images", (tracks[1:], seen[1:])),
                 (pliant.Error, "it has to be (frames, points, 2) with x before y", (tracks[0], seen[0])),
-                (pliant.Error, "save bools, for example visibility > 0.5", (tracks, seen.astype(float))),
+                (pliant.Error, "has the value 0.75, which is neither 0 nor 1; save bools, for example visibility > 0.5",
+                 (tracks, np.where(seen, 0.75, 0))),
+                (pliant.Error, "no pixel of the given tracks is in the image with a sigma_px of",
+                 {"tracks": tracks, "visibility": seen, "sigma_px": np.full(seen.shape, 9.0)}),
                 (ValueError, "the tracks have the arrays points, occluded; name them",
                  {"points": tracks, "occluded": ~seen}),
                 (ValueError, "tracks is a tuple of 3; give a pair", (tracks, seen, seen)),
