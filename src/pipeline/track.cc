@@ -30,8 +30,11 @@ namespace {
 struct Ending {
   RunStatus status = RunStatus::kCompleted;
   std::string note;
-  bool came_without_map = false;  // the sequence's end
+  ErrorCode error = ErrorCode::kInsufficient;  // of a failed run: by itself, no map was made
+  bool came_without_map = false;               // the sequence's end
 };
+
+Ending FailedBecauseOf(const Status& status) { return {RunStatus::kFailed, status.message(), status.code()}; }
 
 RunColumns ColumnsOfFrames(const TrackerExtensions& extensions) {
   RunColumns columns;
@@ -58,7 +61,8 @@ Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note
     return {RunStatus::kLost, "after frame " + last_tracked + "; in the sequence's last frame: " + last_note};
   if (frames == 1)
     return {RunStatus::kFailed, "one frame is not enough for a map; give two or more, between which the camera moved"};
-  return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note + other_starts, true};
+  return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note + other_starts,
+          ErrorCode::kInsufficient, true};
 }
 
 // Of the frames so far, for what is said at the end.
@@ -104,8 +108,7 @@ class FrameLoop {
     // Whatever the ending: the frames that waited for a map are written too.
     Status recorded = recorder_.Record(tracker_.Finish());
     if (recorded.ok()) recorded = recorder_.Finish();
-    return recorded.ok() || ending.status == RunStatus::kFailed ? ending
-                                                                : Ending{RunStatus::kFailed, recorded.message()};
+    return recorded.ok() || ending.status == RunStatus::kFailed ? ending : FailedBecauseOf(recorded);
   }
 
  private:
@@ -115,7 +118,7 @@ class FrameLoop {
                        checkpoint_frames);
     while (true) {
       const auto frame = frames.Next();
-      if (frame && !frame->ok()) return {RunStatus::kFailed, frame->status().message()};
+      if (frame && !frame->ok()) return FailedBecauseOf(frame->status());
       if (frame) {
         if (auto ending = TrackFrame(**frame, frames)) return *ending;
       } else {
@@ -127,8 +130,7 @@ class FrameLoop {
         if (!(*frame)->checked.empty() && tracker_.IsSerializable()) WriteCheckpointAfter(**frame);
         continue;
       }
-      if (const Status reopened = frames.GoBackTo(*back); !reopened.ok())
-        return {RunStatus::kFailed, reopened.message()};
+      if (const Status reopened = frames.GoBackTo(*back); !reopened.ok()) return FailedBecauseOf(reopened);
     }
     if (!tracker_.held().empty()) so_far_.last_note = tracker_.held().back().note;
     for (const FrameReport& report : tracker_.held())
@@ -143,7 +145,7 @@ class FrameLoop {
   std::optional<Ending> TrackFrame(const ReadFrame& read, FrameSource& frames) {
     // What was read ahead for nothing cannot end the run, or the number of threads would decide.
     if (tracker_.NeedsDepth() && read.depth_status)
-      if (const Status depth = read.depth_status(); !depth.ok()) return Ending{RunStatus::kFailed, depth.message()};
+      if (const Status depth = read.depth_status(); !depth.ok()) return FailedBecauseOf(depth);
     recorder_.Show(read);
     std::vector<FrameReport> done = tracker_.Process(read.frame);
     recorder_.SetLatency(frames.last_frame_idx(), frames.LatencyMs());
@@ -156,8 +158,7 @@ class FrameLoop {
       if (HasPose(report.state)) so_far_.last_tracked = report.name;
       if (report.state == TrackingState::kAmbiguous) so_far_.ambiguity = report.note;
     }
-    if (const Status recorded = recorder_.Record(std::move(done)); !recorded.ok())
-      return Ending{RunStatus::kFailed, recorded.message()};
+    if (const Status recorded = recorder_.Record(std::move(done)); !recorded.ok()) return FailedBecauseOf(recorded);
     if (tracker_.GaveUp())
       return Ending{RunStatus::kLost, "after frame " + so_far_.last_tracked + "; given up in frame " + read.frame.name +
                                           ": " + so_far_.last_note};
@@ -287,15 +288,17 @@ RunSummary FinishRun(RunWriter& writer, LiveSource* live, Ending ending) {
   if (live != nullptr) {
     writer.SetStream(live->counts());
     const Status recorded = live->FinishRecording();
-    if (!recorded.ok() && ending.status != RunStatus::kFailed) ending = {RunStatus::kFailed, recorded.message()};
+    if (!recorded.ok() && ending.status != RunStatus::kFailed) ending = FailedBecauseOf(recorded);
     if (const std::string advice = AdviceOnSkippedImages(writer.summary()); !advice.empty())
       ending.note += "; " + advice;
   }
   const Status finished = writer.Finish(ending.status, ending.note);
   RunSummary summary = writer.summary();
+  if (ending.status == RunStatus::kFailed) summary.error = ending.error;
   if (!finished.ok()) {
     summary.status = RunStatus::kFailed;
     summary.note = finished.message();
+    summary.error = finished.code();
   }
   return summary;
 }
@@ -325,7 +328,7 @@ Status EndOf(const RunSummary& summary, const std::string& output_path) {
   std::string sentence = summary.note;
   if (summary.frames_tracked > 0)
     sentence += "; " + std::to_string(summary.frames_tracked) + " tracked frames are in " + output_path;
-  return {summary.status == RunStatus::kFailed ? ErrorCode::kInsufficient : ErrorCode::kInterrupted, sentence};
+  return {summary.status == RunStatus::kFailed ? summary.error : ErrorCode::kInterrupted, sentence};
 }
 
 Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,

@@ -34,6 +34,7 @@ TEST(Robustness, ADamagedImageEndsTheRunAndTheFramesBeforeItStay) {
   sequence.Damage(9);
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_EQ(EndOf(summary, folder.Path("run")).code(), ErrorCode::kUnreadable);
   EXPECT_THAT(summary.note, HasSubstr(FrameName(9)));
   EXPECT_EQ(summary.frames_tracked, 9);
   ExpectReadable(folder.Path("run"), 9);
@@ -185,6 +186,7 @@ TEST(Robustness, AFrozenSequenceCarriesNoMapAndSaysFrozen) {
   for (int i = 1; i < 6; ++i) sequence.Replace(i, still);
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), TrackOptions());
   EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_EQ(EndOf(summary, folder.Path("run")).code(), ErrorCode::kInsufficient);
   EXPECT_THAT(summary.note, HasSubstr("frozen"));
 }
 
@@ -193,6 +195,7 @@ TEST(Robustness, StoppedOnRequestTheRunSaysInterrupted) {
   const std::atomic<bool> stop = true;
   const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), DepthStart(), -1, &stop);
   EXPECT_EQ(summary.status, RunStatus::kInterrupted);
+  EXPECT_EQ(EndOf(summary, folder.Path("run")).code(), ErrorCode::kInterrupted);
   EXPECT_EQ(summary.frames_tracked, 1);
   ExpectReadable(folder.Path("run"), 1);
 }

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tracking of images that Python has equals tracking of their folder, and images that are none are refused."""
 
+import shutil
 import threading
 import unittest
 
@@ -179,6 +180,23 @@ class Images(TestCase):
             pliant.track([image[:240] for image in self.images], self.folder / "run", camera=self.camera)
         self.assertEqual(caught.exception.code, "mismatch")
         self.assertIn("is for images of 640x480, but image 0 is 640x240", sentence(self, caught.exception))
+
+    def test_what_goes_wrong_on_the_way_has_the_code_that_it_has_at_the_beginning(self):
+        for given in (list, iter):
+            for before in (0, 6):
+                wrong = [*self.images[:before], self.images[6][:240], self.images[7]]
+                with self.subTest(before=before), self.assertRaises(pliant.Error) as caught:
+                    pliant.track(given(wrong), self.folder / "run", FIXED, camera=self.camera)
+                self.assertEqual(caught.exception.code, "mismatch")
+                self.assertIn(f"image {before} is 640x240", sentence(self, caught.exception))
+        depth = self.folder / "depth"
+        shutil.copytree(SEQUENCE / "depth", depth)
+        sorted(depth.iterdir())[6].write_bytes(b"no image")
+        options = {"Init.method": "depth_prior", "DepthPrior.kind": "depth", **FIXED}
+        with self.assertRaises(pliant.Error) as caught:
+            pliant.track(SEQUENCE, self.folder / "run", options, depth_prior=depth, end=10)
+        self.assertEqual(caught.exception.code, "unreadable")
+        self.assertIn("6 tracked frames are in", sentence(self, caught.exception))
 
     def test_what_does_not_go_together_is_a_value_error(self):
         for arguments, words in (

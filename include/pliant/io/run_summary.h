@@ -114,8 +114,9 @@ struct Latency {
 struct RunSummary {
   RunDescription description;
   RunStatus status = RunStatus::kInterrupted;
-  std::string note;                        // why the run ended, one sentence
-  std::vector<FirstMapFrames> first_maps;  // one a map that was made, in the order of time
+  std::string note;                            // why the run ended, one sentence
+  ErrorCode error = ErrorCode::kInsufficient;  // of a failed run, what went wrong: never kOk; run.json does not say it
+  std::vector<FirstMapFrames> first_maps;      // one a map that was made, in the order of time
 
   std::optional<StreamCounts> stream;  // nothing: all images were there before
   std::int64_t frames_read = 0;

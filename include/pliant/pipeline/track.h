@@ -142,8 +142,9 @@ class TrackObserver {
 Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& options,
                             std::span<TrackObserver* const> observers);
 
-// Whether a run of this summary, in the folder `output_path`, did all that it could: kInterrupted and kInsufficient say
-// how an interrupted and a failed one ended, and how much there is of it.
+// Whether a run of this summary, in the folder `output_path`, did all that it could. Fails with kInterrupted for one
+// that was stopped, and with the summary's error for one that failed (kInsufficient: there was no first map); the
+// sentence says how it ended, and how much there is of it.
 Status EndOf(const RunSummary& summary, const std::string& output_path);
 
 }  // namespace pliant
