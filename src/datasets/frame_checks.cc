@@ -18,13 +18,13 @@ constexpr double kMaxStep_s = 1000;        // of any camera
 constexpr double kMicrosecondSteps = 1e6;  // larger ones are nanoseconds
 constexpr double kMaxPriorStretch = 0.02;  // of the sides' ratio: sizes are rounded to multiples of a network's patches
 
-double MedianStep(std::span<const double> times_s) {
-  std::vector<double> steps_s;
-  for (std::size_t k = 1; k < times_s.size(); ++k) steps_s.push_back(times_s[k] - times_s[k - 1]);
-  return Median(std::move(steps_s));
-}
-
 }  // namespace
+
+double MedianStep(std::span<const double> times) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < times.size(); ++k) steps.push_back(times[k] - times[k - 1]);
+  return Median(std::move(steps));
+}
 
 std::string_view UnitOfSteps(std::span<const double> times_s) {
   const double step_s = MedianStep(times_s);

@@ -57,25 +57,44 @@ Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& pose
   return Status::Ok();
 }
 
-// Adds the points to the frames. Of another system's result frames may have points and no pose. `sequence` is null
-// where the run is Pliant's own.
-Status ReadPoints(const std::string& run_path, const Sequence* sequence, EvaluationInput* input, FrameMap* frames) {
+// Of another system's result: `unmatched` frames of the sequence have points, but by its time no pose. Where there are
+// as many poses as frames with points, each of these frames should have one.
+Status CheckPosesOfPoints(const std::string& run_path, std::size_t poses, std::size_t with_points,
+                          std::size_t unmatched) {
+  constexpr std::size_t kMinCompared = 5;  // fewer are as many by chance
+  if (poses != with_points || poses < kMinCompared || 3 * unmatched < poses) return Status::Ok();
+  return {ErrorCode::kMismatch, run_path + " has " + std::to_string(poses) +
+                                    " poses and as many frames with points, but by the times of the poses " +
+                                    std::to_string(unmatched) +
+                                    " of these frames have none: give each pose the time of its frame"};
+}
+
+// Adds the points to the frames. Of another system's result, of so many poses, frames may have points and no pose.
+// `sequence` is null where the run is Pliant's own.
+Status ReadPoints(const std::string& run_path, const Sequence* sequence, std::size_t poses, EvaluationInput* input,
+                  FrameMap* frames) {
   Result<ObservationReader> reader = ObservationReader::Open(run_path);
   if (!reader.ok()) return reader.status();
-  int without_pose = 0;
+  std::size_t with_points = 0;
+  std::size_t without_pose = 0;
+  std::size_t unmatched = 0;
   while (true) {
     Result<std::optional<FrameObservations>> rows = reader->Next();
     if (!rows.ok()) return rows.status();
     if (!rows->has_value()) break;
+    ++with_points;
     const int frame_idx = (*rows)->frame_idx;
     const auto frame = frames->find(frame_idx);
     if (frame != frames->end() && frame->second.cam_from_world) {
       frame->second.observations = std::move((*rows)->observations);
     } else if (sequence != nullptr) {
+      const auto time_s = sequence->TimestampS(frame_idx);
       ++without_pose;
-      FrameAt(frame_idx, sequence->TimestampS(frame_idx).value_or(0), frames);
+      if (time_s) ++unmatched;
+      FrameAt(frame_idx, time_s.value_or(0), frames);
     }  // else: a killed run may have written the points of a frame whose pose it had not
   }
+  if (Status status = CheckPosesOfPoints(run_path, poses, with_points, unmatched); !status.ok()) return status;
   if (without_pose > 0)
     input->notes.push_back(std::to_string(without_pose) + " frames of " + run_path +
                            " have points and no pose; they count as not tracked");
@@ -127,7 +146,9 @@ Result<EvaluationInput> ReadInput(const std::string& run_path, const Sequence* s
       FrameAt(*pose.frame_idx, pose.timestamp_s, &frames).cam_from_world = pose.world_from_cam.Inverse();
     }
   }
-  if (Status status = ReadPoints(run_path, foreign ? sequence : nullptr, &input, &frames); !status.ok()) return status;
+  if (Status status = ReadPoints(run_path, foreign ? sequence : nullptr, run->poses.size(), &input, &frames);
+      !status.ok())
+    return status;
   for (auto& entry : frames) input.frames.push_back(std::move(entry.second));
   return input;
 }

@@ -180,6 +180,29 @@ TEST_F(RunFolderEvaluation, NotesPosesWithoutAFrameAndPointsWithoutAPose) {
   EXPECT_THAT(wide->notes, ElementsAre(HasSubstr("1 of 5 poses")));
 }
 
+TEST_F(RunFolderEvaluation, RefusesPosesAtOtherFramesThanTheirPoints) {
+  // Every pose is at a frame, but at twice the number of its own.
+  std::string poses;
+  std::string points = "frame,point_id,u_px,v_px,x,y,z,ssim\n";
+  for (int frame = 0; frame < 8; ++frame) {
+    poses += FormatDouble(0.08 * frame) + " 0 0 0 0 0 0 1\n";
+    points += std::to_string(frame) + ",1,10,20,1,2,30,1\n";
+  }
+  Write("trajectory.txt", poses);
+  Write("observations.csv", points);
+  const auto read = ReadEvaluationInput(Run(), TruthSequence(8), {});
+  EXPECT_EQ(read.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(read.status().message(), HasSubstr("has 8 poses and as many frames with points, but by the times of "
+                                                 "the poses 4 of these frames have none"));
+}
+
+TEST_F(RunFolderEvaluation, PointsAndPosesMayGoBeyondTheSequence) {
+  WriteRun(MakeRun(8, 1, 1));
+  const auto read = ReadEvaluationInput(Run(), TruthSequence(4), {});
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_THAT(read->notes, testing::Contains(HasSubstr("poses of")));
+}
+
 TEST_F(RunFolderEvaluation, BadRowsAndEmptyRunsAreOneSentence) {
   const TruthSequence sequence(8);
   const std::string pose = "0 0 0 0 0 0 0 1\n";

@@ -320,6 +320,16 @@ TEST_F(ImportTest, OnePoseOfSeveralThatIsNearAFrameIsThereByChance) {
   EXPECT_THAT(status.message(), HasSubstr("sequence's clock"));
 }
 
+TEST_F(ImportTest, ACameraPathAtAnotherRateThanTheFramesIsRefused) {
+  std::string path;
+  for (int i = 0; i < kImages; ++i) path += std::to_string(i / 30.0) + " 1 2 3 0 0 0 1\n";
+  folder_.Write("path", path);
+  const Status status = ImportFrom("path", ImportFormat::kTum).status();
+  EXPECT_EQ(status.code(), ErrorCode::kMismatch);
+  EXPECT_THAT(status.message(), HasSubstr(" come 30.00 times a second and the frames 25.00 times"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("out")));
+}
+
 TEST_F(ImportTest, TimesOfAnotherClockAreRefusedWithTheirUnit) {
   folder_.Write("euroc.txt",
                 "1403636579763555584 1 2 3 0 0 0 1\n1403636579813555456 4 5 6 0 0 0 1\n"

@@ -14,6 +14,9 @@
 
 namespace pliant {
 
+// The median difference of successive times; 0 of fewer than two.
+double MedianStep(std::span<const double> times);
+
 // The unit, in place of seconds, that the median step of successive times is likely to have: "microseconds" above a
 // thousand, "nanoseconds" above a million; else empty.
 std::string_view UnitOfSteps(std::span<const double> times_s);

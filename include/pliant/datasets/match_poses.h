@@ -24,7 +24,9 @@ struct MatchedPoses {
 // Gives each pose to the frame nearest in time, if it is not further than `max_difference_s`; of several poses near one
 // frame the nearest is taken. Times that come to more frames when they are read as milli-, micro- or nanoseconds are
 // read so. `name` is the poses' in messages. Fails with kMismatch if the sequence has no times, if no pose is near a
-// frame, or if only one of several is near one of several frames: by chance.
+// frame, if hardly one of several is near one of several frames, by chance, or if the poses lie anywhere between the
+// frames and are not more than these: they have another rate. Poses may be fewer than the frames, at every n-th or any
+// of them, at jittered times, off by a constant, or more of another device at times of its own.
 Result<MatchedPoses> MatchPoses(std::span<const TimedPose> poses, const Sequence& sequence, double max_difference_s,
                                 const std::string& name);
 

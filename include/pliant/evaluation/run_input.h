@@ -67,7 +67,8 @@ EvaluationFrame FrameFromReport(const FrameReport& report);
 
 // Reads a run folder. Of another system's result (no frames.csv) the frames read are those with a pose or points; a
 // pose that is near no frame, and points in a frame without a pose, are left out and noted. Rows of a killed run's
-// last, unfinished frame are left out. Errors as io's ReadRun, and kMismatch where no pose is near any frame.
+// last, unfinished frame are left out. Errors as io's ReadRun, kMismatch as MatchPoses (pliant/datasets/match_poses.h),
+// and where there are as many poses as frames with points, and many of these have no pose.
 Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path, const Sequence& sequence,
                                             const MatchingOptions& options);
 
