@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// C3VD (Bobrow et al., Medical Image Analysis 2023) and C3VDv2: a colonoscope in a phantom. N_color.png and
-// NNNN_depth.tiff, in C3VDv2 in folders rgb/ and depth/, 16 bits whose full scale is 100 mm and all beyond; pose.txt,
-// sixteen numbers a line between commas, the transpose of world from camera in mm.
+// C3VD (Bobrow et al., Medical Image Analysis 2023), C3VDv2 and C3VD-DEFCOL: a colonoscope in a phantom, or in one that
+// deforms. N_color.png and NNNN_depth.tiff, in C3VDv2 in folders rgb/ and depth/, in C3VD-DEFCOL there with
+// NNNN_depth.png, 16 bits whose full scale is 100 mm and all beyond; pose.txt, sixteen numbers a line between commas,
+// the transpose of world from camera in mm.
 #include <vector>
 
 #include "datasets/formats.h"
@@ -44,6 +45,13 @@ Result<std::map<int, Rigid3>> ReadPoses(const fs::path& file) {
   return poses;
 }
 
+// By number; in the folder are also files of other kinds.
+std::map<int, fs::path> DepthsIn(const fs::path& folder) {
+  for (const char* suffix : {"_depth.tiff", ".tiff", "_depth.png"})
+    if (auto depths = NumberedFiles(folder, "", suffix); !depths.empty()) return depths;
+  return {};
+}
+
 // The folder of the images: the data set's own, or rgb/ in it.
 fs::path ImagesOf(const fs::path& path) {
   for (const fs::path& folder : {path, path / "rgb"})
@@ -58,14 +66,12 @@ bool IsC3vd(const fs::path& path) { return !ImagesOf(path).empty(); }
 Result<DataSet> OpenC3vd(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
   const fs::path images = ImagesOf(folder);
-  const fs::path depths = images == folder ? folder : folder / "depth";
   NumberedSet set{
       .folder = images,
       .images = NumberedFiles(images, "", "_color.png"),
-      .depth = NumberedFiles(depths, "", "_depth.tiff"),
+      .depth = DepthsIn(images == folder ? folder : folder / "depth"),
       .read_depth = [](const fs::path& file) { return ReadClampedDepthImage(file, kFullScale_mm / kSteps); }};
   if (set.images.empty()) set.images = NumberedFiles(images, "", ".png");
-  if (set.depth.empty()) set.depth = NumberedFiles(depths, "", ".tiff");
   if (IsFile(folder / "pose.txt")) {
     auto poses = ReadPoses(folder / "pose.txt");
     if (!poses.ok()) return poses.status();

@@ -44,7 +44,7 @@ std::span<const DataSetFormat> DataSetFormats() {
   static constexpr std::array<DataSetFormat, 15> kFormats = {{
       {"colmap", "a folder of COLMAP, images/ and a model in sparse/", IsColmapFolder, OpenColmapFolder},
       {"native", "a sequence in Pliant's own layout", IsNativeSequence, OpenNativeSequence},
-      {"c3vd", "C3VD or C3VDv2, a colonoscope in a phantom", IsC3vd, OpenC3vd},
+      {"c3vd", "C3VD, C3VDv2 or C3VD-DEFCOL, a colonoscope in a phantom", IsC3vd, OpenC3vd},
       {"endomapper", "Endomapper, a real procedure", IsEndomapper, OpenEndomapper, EndomapperLacks},
       {"endomapper_simulated", "Endomapper, a simulated sequence", IsEndomapperSimulated, OpenEndomapperSimulated},
       {"endoslam", "EndoSLAM's UnityCam", IsEndoSlam, OpenEndoSlam},

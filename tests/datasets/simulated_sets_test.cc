@@ -33,19 +33,23 @@ TEST_F(DataSets, ReadsSimCol3D) {
   ExpectTheScene(Path("Frames_S1"), {.kind = "simcol", .depth_mm = 0.01});
 }
 
-TEST_F(DataSets, ReadsBothVersionsOfC3vd) {
+TEST_F(DataSets, ReadsC3vdInItsThreeLayouts) {
   std::string poses;
   for (int k = 0; k < Frames(); ++k) {
     Write("v1/" + std::to_string(k) + "_color.png", Frame(k).image);
     Write("v1/" + Numbered("%04d_depth.tiff", k), Steps(Frame(k).depth, 100.0 / 65535.0));
     Write("v2/rgb/" + Numbered("%04d.png", k), Frame(k).image);
     Write("v2/depth/" + Numbered("%04d.tiff", k), Steps(Frame(k).depth, 100.0 / 65535.0));
+    Write("defcol/rgb/" + Numbered("%04d.png", k), Frame(k).image);
+    Write("defcol/depth/" + Numbered("%04d_depth.png", k), Steps(Frame(k).depth, 100.0 / 65535.0));
+    Write("defcol/normals/" + Numbered("%04d_normals.png", k), Frame(k).image);
     const Eigen::Matrix3d r = Pose(k).RotationMatrix();
     const Eigen::Vector3d& t = Pose(k).translation;
     poses += Line(",", r(0, 0), r(1, 0), r(2, 0), 0, r(0, 1), r(1, 1), r(2, 1), 0, r(0, 2), r(1, 2), r(2, 2), 0, t.x(),
                   t.y(), t.z(), 1);
   }
-  for (const char* version : {"v1", "v2"}) {
+  Text("defcol/world_vertex_positions.bin", "vertices");
+  for (const char* version : {"v1", "v2", "defcol"}) {
     Text(std::string(version) + "/pose.txt", poses);
     SceneCamera(std::string(version) + "/camera.yaml");
     ExpectTheScene(Path(version), {.kind = "c3vd", .depth_mm = 0.01});

@@ -255,15 +255,16 @@ def benchmark_c3vd_others(folder):
         rows = found[-1]
         assert rows[0]["sequence"] == sequence and "No published numbers" in text, text
         check_camera(rows[0])
-        if name == "c3vd_v2":
+        if name != "c3vd_v2_deformation":  # it has no depth
             check_points(rows[0])
+            assert float(rows[0]["depth RMSE, mm"]) < MAX_POINTS_MM, rows
         if name == "c3vd_v2_deformation":
             assert rows[1]["ATE RMSE, mm"] == "-" and float(rows[1]["points a frame"]) > 20, rows
     fails("publishes no calibration", "c3vd_defcol", "--data", folder / "c3vd_defcol", "--output_path", folder / "x")
-    with open(folder / "c3vd_defcol/rigid_1/pose.txt", "a", encoding="utf-8") as file:
+    with open(folder / "c3vd_v2_deformation/c1_cecum_t1_v4/pose.txt", "a", encoding="utf-8") as file:
         file.write("1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n")
-    code, text, _ = run("c3vd_defcol", "--data", folder / "c3vd_defcol", "--camera", folder / "camera.yaml",
-                        "--output_path", folder / "out_c3vd_defcol")
+    code, text, _ = run("c3vd_v2_deformation", "--data", folder / "c3vd_v2_deformation", "--camera",
+                        folder / "camera.yaml", "--output_path", folder / "out_c3vd_v2_deformation")
     assert code == benchmarks.COULD_NOT_RUN and "has 17 poses for 16 images" in text, text
 
 
