@@ -35,7 +35,8 @@ void TrackerOptions::List(OptionTable& table) {
   table.Add("max_reprojection_px", &max_reprojection_px, "px",
             "a point with a larger reprojection error after the joint problem is rejected", 0.1, 1e6);
   table.Add("min_points", &min_points, "-", "the view is lost with fewer points", 4, 100000);
-  table.Add("min_corners", &min_corners, "-", "an image with fewer corners is no reference", 8, 100000);
+  table.Add("min_corners", &min_corners, "-",
+            "an image with fewer corners is no reference; of tracks from a file 12 are enough", 8, 100000);
   table.Add("top_up_frames", &top_up_frames, "frames",
             "while the first map is awaited, corners are added every Nth frame (Init.method = window)", 1, 1000000);
   table.AddChoice("track_blurred", &track_blurred,

@@ -163,6 +163,31 @@ TEST_F(GivenTracksRun, TracksThatBeginLaterAreCandidatesOfTheMap) {
   EXPECT_GT(grown, 0);
 }
 
+TEST_F(GivenTracksRun, TheEndNamesWhyTheLastReferenceOfTracksWasGivenUp) {
+  constexpr std::size_t kTracks = 45;
+  constexpr int kDieIn = 5;
+  TrackOptions options;
+  options.tracker.masks.highlights = Switch::kOff;  // all of them are begun with
+  options.tracker.corners.contour_filter = Switch::kOff;
+  options.tracker.corners.min_distance_px = 1;
+  std::vector<PixelTrack> tracks = TrueTracks();
+  std::erase_if(tracks, [](const PixelTrack& track) { return track.pixels.size() < kTrackedFrames; });
+  ASSERT_GT(tracks.size(), kTracks);
+  tracks.resize(kTracks);
+  for (const auto& [left, note] : {std::pair(11,
+                                             "only 11 points are still followed (at least 22 must be); no reference "
+                                             "since then: 11 tracks, of at least 12"),
+                                   std::pair(0,
+                                             "all points were lost; no reference since then: 0 tracks, of at least "
+                                             "12")}) {
+    for (std::size_t k = static_cast<std::size_t>(left); k < kTracks; ++k)
+      std::erase_if(tracks[k].pixels, [](const TrackPixel& seen) { return seen.frame_idx >= kDieIn; });
+    const RunSummary summary = TrackFile(tracks, options);
+    EXPECT_EQ(summary.status, RunStatus::kFailed);
+    EXPECT_THAT(summary.note, HasSubstr(std::string("the sequence ended without a first map: ") + note));
+  }
+}
+
 TEST_F(GivenTracksRun, WhatContradictsAFileOfTracksIsRefusedInOneSentence) {
   TrackOptions options = Options();
   options.track_file.path = folder_.Path("nowhere.csv");

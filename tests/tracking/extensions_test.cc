@@ -182,5 +182,33 @@ TEST_F(Extensions, AGivenSourceFollowsThePoints) {
   EXPECT_EQ(made, 1);
 }
 
+// Finds no point again.
+class BlindTracks final : public PatchTracks {
+ public:
+  using PatchTracks::PatchTracks;
+  std::vector<PointTrack> Track(const PreparedFrame& /*previous*/, const PreparedFrame& /*current*/,
+                                std::span<const PointPrediction> predictions) override {
+    std::vector<PointTrack> lost;
+    for (const PointPrediction& prediction : predictions)
+      lost.push_back({.id = prediction.id, .failure = PatchFailure::kOccluded, .pixel = prediction.pixel});
+    return lost;
+  }
+};
+
+TEST_F(Extensions, ASourceThatLosesAllPointsIsNamedAsTheCause) {
+  for (const InitMethod method : {InitMethod::kWindow, InitMethod::kGated}) {
+    TrackerOptions options;
+    options.init.method = method;
+    TrackerExtensions extensions;
+    extensions.make_tracks = [&] { return std::make_unique<BlindTracks>(options.point_tracker, 1); };
+    Tracker tracker(*camera_, options, 1, 1, {.extensions = extensions});
+    for (int i = 0; i < kFrames; ++i) Show(i, i, &tracker);
+    tracker.EndSequence();
+    const std::vector<FrameReport> rest = tracker.Finish();
+    ASSERT_FALSE(rest.empty());
+    EXPECT_EQ(rest.back().note, "all points were lost; no image follows the reference");
+  }
+}
+
 }  // namespace
 }  // namespace pliant

@@ -303,6 +303,25 @@ TEST(MonocularInitializer, GivesUpAReferenceThatDoesNotServe) {
   EXPECT_EQ(first.decision, InitDecision::kWait);
 }
 
+TEST(MonocularInitializer, SaysThatAllPointsWereLostOrThatNoImageFollows) {
+  const SceneOptions options;
+  auto frames = FramesOf(MakeScene(options), options, kFirstIdx);
+  const auto reason = [&](const std::unique_ptr<Initializer>& initializer, InitMoment moment) {
+    const InitOutcome outcome = initializer->Try({SceneCamera(options), frames, {}, moment});
+    EXPECT_EQ(outcome.decision, InitDecision::kNewReference) << outcome.reason;
+    return outcome.reason;
+  };
+  std::vector<std::unique_ptr<Initializer>> initializers;
+  initializers.push_back(MakeGatedInitializer({}, Random(1)));
+  initializers.push_back(MakeWindowInitializer({}, MonocularInitOptions().nominal_depth_mm));
+  frames.back().observations.clear();
+  for (const auto& initializer : initializers)
+    EXPECT_EQ(reason(initializer, InitMoment::kMoreFollow), "all points were lost") << initializer->name();
+  frames.resize(1);
+  for (const auto& initializer : initializers)
+    EXPECT_EQ(reason(initializer, InitMoment::kLastFrame), "no image follows the reference") << initializer->name();
+}
+
 TEST(MonocularInitializer, SurvivesNotANumberAndEqualPixels) {
   const SceneOptions options{.num_points = 100};
   auto frames = FramesOf(MakeScene(options), options, kFirstIdx);

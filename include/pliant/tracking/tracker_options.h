@@ -59,7 +59,7 @@ struct TrackerOptions {
   double max_search_px = 8;             // a lost point found farther from where it is expected is another one
   double max_reprojection_px = 2.4477;  // square root of the 95 % quantile of chi-square at 2 degrees of freedom
   int min_points = 12;                  // fewer: lost
-  int min_corners = 40;                 // fewer in an image: it is no reference
+  int min_corners = 40;                 // fewer in an image: it is no reference; of tracks from a file 12 do
   int top_up_frames = 10;               // while the first map is awaited, corners are added every Nth frame
   Switch track_blurred = Switch::kOn;   // into blurred images too; before the first map these are passed over
   double min_sharpness = 0.6;           // relative to the last sharp image: less is blurred, or dark

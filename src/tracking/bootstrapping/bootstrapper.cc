@@ -43,7 +43,12 @@ Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, 
 BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   assert(submap->map.landmarks.empty());
   waiting_.CountFrame();
-  if (!HasReference()) return TakeReference(frame, submap, times);
+  if (!HasReference()) {
+    BootstrapStep step = TakeReference(frame, submap, times);
+    const bool is_refused = std::ranges::find(step.events, TrackingEvent::kTooFewCorners) != step.events.end();
+    if (is_refused && !step.map && !given_up_.empty()) step.note = given_up_ + "; " + step.note;
+    return step;
+  }
   if (submap->IsBlurred(frame, options_, tracks_->abilities())) {
     // A dark or blurred frame is passed over: the points are searched again in the next one.
     ++submap->blurred_frames;
@@ -72,20 +77,25 @@ BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* su
       tracks_->abilities().adds_always ? std::min(kFewestPoints, options_.min_corners) : options_.min_corners;
   if (step.tracked < needed) {
     step.events = {TrackingEvent::kTooFewCorners};
-    step.note = WithFault("no reference yet: " + std::to_string(step.tracked) +
-                              (initializer_->TakesKnownPoints() ? " points of known depth" : " corners") +
-                              ", of at least " + std::to_string(needed),
+    step.note = WithFault((given_up_.empty() ? "no reference yet: " : "no reference since then: ") +
+                              NumberOfPoints(step.tracked) + ", of at least " + std::to_string(needed),
                           ImageFault(frame, submap->previous.gray));
     GiveUpReference(&step);
   } else {
     TryInitialize(frame, times, &step);
     if (HasReference()) {
       step.events.push_back(TrackingEvent::kReferenceFound);
-      step.note = "reference with " + std::to_string(step.tracked) + " corners";
+      step.note = "reference with " + NumberOfPoints(step.tracked);
     }
   }
   submap->Remember(frame);
   return step;
+}
+
+// What a reference has, in words.
+std::string Bootstrapper::NumberOfPoints(int count) const {
+  if (initializer_->TakesKnownPoints()) return std::to_string(count) + " points of known depth";
+  return std::to_string(count) + (tracks_->abilities().adds_always ? " tracks" : " corners");
 }
 
 BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
@@ -206,6 +216,7 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
       break;
     case InitDecision::kNewReference:
       TellAmbiguity(outcome, step);
+      given_up_ = outcome.reason;
       doubts_.was_ambiguous |= outcome.ambiguous;
       GiveUpReference(step);
       break;
@@ -308,6 +319,7 @@ void Bootstrapper::FinishMap(FirstMap map, BootstrapStep* step) {
     if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
   waiting_.DropAll();
   doubts_ = {};
+  given_up_.clear();
   ForgetAlternative();
   map.outcome.decision = InitDecision::kMap;
   oracle_poses_->TakeWorld({camera_, map.frames, {}}, &map.outcome);
@@ -338,9 +350,11 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   }
   PreparedFrame last;
   last.frame_idx = frames_.back().frame_idx;
+  // What a reference in the last image lacks says less than why the one before was given up.
+  const std::string before = frames_.size() == 1 && !given_up_.empty() ? given_up_ + "; " : "";
   const auto alternative = waiting_.IsEmpty() ? AlternativeToAsk() : nullptr;
   Answer answer = AskInitializers(frames_, {}, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
-  step.note = WithFault(answer.outcome.reason, image_fault_);
+  step.note = WithFault(before + answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
   waiting_.EndWait();
   if (answer.outcome.decision == InitDecision::kNewReference) TellAmbiguity(answer.outcome, &step);
@@ -354,6 +368,7 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
 void Bootstrapper::Abandon() {
   DropReference();
   waiting_.DropAll();
+  given_up_.clear();
 }
 
 void Bootstrapper::DropReference() {
@@ -448,7 +463,8 @@ void Bootstrapper::Serialize(StateArchive& archive) {
   bool asks_alternative = alternative_ != nullptr;
   archive(asks_alternative);
   if (!asks_alternative) alternative_.reset();
-  archive(has_map_, frames_, known_depths_, image_fault_, waiting_, doubts_, would_start_, last_reason_, answers_);
+  archive(has_map_, frames_, known_depths_, image_fault_, waiting_, doubts_, would_start_, last_reason_, given_up_,
+          answers_);
 }
 void Bootstrapper::Doubts::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 void Bootstrapper::Answer::Serialize(StateArchive& archive) { archive.Members<4>(*this); }

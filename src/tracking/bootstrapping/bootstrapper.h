@@ -81,6 +81,7 @@ class Bootstrapper {
  private:
   BootstrapStep TakeReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
   BootstrapStep FollowReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
+  std::string NumberOfPoints(int count) const;
   // Whether the camera moves at all, as answers said.
   struct Doubts {
     bool camera_may_stand_still = false;  // since the reference
@@ -137,6 +138,7 @@ class Bootstrapper {
   Doubts doubts_;
   std::string would_start_;
   std::string last_reason_;         // of the last answer
+  std::string given_up_;            // why the last reference was, since the last map; empty: none was
   DelayedAnswers<Answer> answers_;  // steps: the number of frames since the reference; ends before what it reads
 };
 

@@ -366,6 +366,11 @@ class GatedInitializer final : public Initializer {
   InitOutcome Try(const InitInput& input) const override {
     InitOutcome outcome;
     const int since = static_cast<int>(input.frames.size()) - 1;
+    if (const Status status = CheckIsFollowed(input); !status.ok()) {
+      outcome.decision = InitDecision::kNewReference;
+      outcome.reason = status.message();
+      return outcome;
+    }
     if (since < 1) {
       outcome.reason = "this is the reference frame";
       return outcome;

@@ -16,6 +16,13 @@ constexpr double kMaxRotationShare = 0.8;
 
 }  // namespace
 
+Status CheckIsFollowed(const InitInput& input) {
+  if (input.frames.back().observations.empty()) return {ErrorCode::kInsufficient, "all points were lost"};
+  if (input.frames.size() == 1 && input.moment == InitMoment::kLastFrame)
+    return {ErrorCode::kInsufficient, "no image follows the reference"};
+  return Status::Ok();
+}
+
 Result<RotationFit> CheckNotARotation(const MatchedRays& matched, double focal_px, double max_error_px,
                                       double max_share, InitMeasurements* measured) {
   auto rotation = FitRotation(matched.rays0, matched.rays1, focal_px, max_error_px);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Before a first map is attempted: a camera that only turned, or stood still in a still scene, leaves nothing to
-// triangulate.
+// Before a first map is attempted: points that are all lost, and a camera that only turned, or stood still in a still
+// scene, leave nothing to triangulate.
 #pragma once
 
 #include "pliant/base/status.h"
@@ -11,6 +11,9 @@
 #include "tracking/bootstrapping/initial_map.h"
 
 namespace pliant {
+
+// kInsufficient where no point is left in the last frame, or the sequence ends with the reference.
+Status CheckIsFollowed(const InitInput& input);
 
 // The rotation that explains most; kDegenerate when it explains more than `max_share` of the points to `max_error_px`,
 // which leaves nothing to triangulate. Fills in the share measured.

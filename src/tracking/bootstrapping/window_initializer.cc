@@ -50,6 +50,11 @@ class WindowInitializer final : public Initializer {
     const int since = static_cast<int>(input.frames.size()) - 1;
     const int followed = static_cast<int>(input.frames.back().observations.size());
     outcome.measured.correspondences = followed;
+    if (const Status status = CheckIsFollowed(input); !status.ok()) {
+      outcome.decision = InitDecision::kNewReference;
+      outcome.reason = status.message();
+      return outcome;
+    }
     const int needed = NeededPoints(input, options_);
     if (followed < needed) {
       outcome.decision = InitDecision::kNewReference;
