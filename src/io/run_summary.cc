@@ -31,7 +31,8 @@ Json FirstMapJson(const FirstMapFrames& map) {
           {"depth_spread", evidence.depth_spread},
           {"still_camera_error_ratio", evidence.still_camera_error_ratio},
           {"focal_length_factor", evidence.focal_length_factor},
-          {"moves_by_depth", evidence.moves_by_depth}};
+          {"moves_by_depth", evidence.moves_by_depth},
+          {"uses_prior", evidence.uses_prior}};
 }
 
 FirstMapFrames ReadFirstMap(const Json& json) {
@@ -46,7 +47,8 @@ FirstMapFrames ReadFirstMap(const Json& json) {
            .depth_spread = json.value("depth_spread", 0.0),
            .still_camera_error_ratio = json.value("still_camera_error_ratio", 0.0),
            .focal_length_factor = json.value("focal_length_factor", 1.0),
-           .moves_by_depth = json.value("moves_by_depth", false)}};
+           .moves_by_depth = json.value("moves_by_depth", false),
+           .uses_prior = json.value("uses_prior", false)}};
 }
 
 Json RefinementJson(const RunDescription& description) {
@@ -119,6 +121,21 @@ Json MediansJson(const RunSummary& summary) {
           {"followed_coverage", summary.median_followed_coverage}};
 }
 
+Json PriorJson(const PriorCounts& prior) {
+  if (prior.compared == 0 && prior.reestimated_maps == 0) return {};
+  return {{"compared", prior.compared},
+          {"agree", prior.agree},
+          {"fall", prior.fall},
+          {"by_brightness", prior.by_brightness},
+          {"reestimated_maps", prior.reestimated_maps}};
+}
+
+PriorCounts ReadPrior(const Json& json) {
+  return {json.at("compared").get<std::int64_t>(), json.at("agree").get<std::int64_t>(),
+          json.at("fall").get<std::int64_t>(), json.at("by_brightness").get<std::int64_t>(),
+          json.at("reestimated_maps").get<std::int64_t>()};
+}
+
 Json CountsJson(const RunSummary& summary) {
   Json losses = Json::object();
   for (const auto& [reason, count] : summary.losses) losses[reason] = count;
@@ -130,7 +147,8 @@ Json CountsJson(const RunSummary& summary) {
           {"submaps", summary.submaps},
           {"points", summary.points},
           {"observations", summary.observations},
-          {"losses", losses}};
+          {"losses", losses},
+          {"depth_prior", PriorJson(summary.prior)}};
 }
 
 }  // namespace
@@ -238,6 +256,7 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     summary.observations = counts.at("observations").get<std::int64_t>();
     for (const auto& [reason, count] : counts.at("losses").items())
       summary.losses.emplace_back(PresentName(reason), count.get<std::int64_t>());
+    if (const Json prior = counts.value("depth_prior", Json()); !prior.is_null()) summary.prior = ReadPrior(prior);
     const Json& timings = json.at("timings");
     summary.total_s = timings.at("total_s").get<double>();
     summary.frames_per_second = timings.at("frames_per_second").get<double>();

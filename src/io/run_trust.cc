@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMinFrameShare = 0.85;  // with a map
 constexpr double kMinCoverage = 0.5;
+constexpr double kMinDoubtShare = 0.8;  // of the frames, in which a depth prior falls
 
 std::int64_t FramesIn(const RunSummary& summary, TrackingState state) {
   const auto found = std::ranges::find(summary.states, state, [](const auto& count) { return count.first; });
@@ -133,16 +134,39 @@ std::string OfModels(const RunSummary& summary) {
   return text;
 }
 
-// What a start from one image, which is provisional from the first frame on, took for granted.
+// A start from one image is provisional from the first frame on.
+bool IsFromPriorAlone(const RunSummary& summary) {
+  return std::ranges::any_of(summary.first_maps, [](const FirstMapFrames& map) {
+    return map.evidence.provisional && !(map.evidence.depth_sigma > 0.0);
+  });
+}
+
+std::string OfUseOfPrior(const RunSummary& summary) {
+  const auto first_maps =
+      std::ranges::count_if(summary.first_maps, [](const FirstMapFrames& map) { return map.evidence.uses_prior; });
+  const std::int64_t maps = first_maps + summary.prior.reestimated_maps;
+  if (maps > 0)
+    return "A depth prior was given; " + std::to_string(maps) + (maps == 1 ? " map, " : " maps, ") +
+           "first or re-estimated, took depths from it.";
+  if (summary.prior.compared > 0) return "A depth prior was given and had no effect: no map took depths from it.";
+  return "A depth prior was given; it counts where brightness is no depth cue.";
+}
+
+// What a start from one image took for granted, or what became of a weak measurement.
 std::string OfPrior(const RunSummary& summary) {
   if (summary.description.depth_prior.empty()) return {};
   if (IsRefined(summary)) return "The run that was refined was tracked with a depth prior.";
-  const bool alone = std::ranges::any_of(summary.first_maps, [](const FirstMapFrames& map) {
-    return map.evidence.provisional && !(map.evidence.depth_sigma > 0.0);
-  });
-  return alone ? "The first map's depths are those of the depth prior in one image, up to a scale; nothing confirmed "
-                 "them."
-               : "A depth prior was given; it counts where brightness is no depth cue.";
+  std::string doubt = DoubtOfPrior(summary);
+  if (!doubt.empty()) doubt = Capitalized(doubt + (doubt.ends_with('?') ? "" : "."));
+  if (IsFromPriorAlone(summary))
+    return Joined(
+        {"The first map's depths are those of the depth prior in one image, up to a scale; nothing confirmed "
+         "them.",
+         doubt});
+  if (doubt.empty() && summary.prior.compared > 0)
+    doubt = "It agrees with the map in " + std::to_string(summary.prior.agree) + " of " +
+            std::to_string(summary.prior.compared) + " frames.";
+  return Joined({OfUseOfPrior(summary), doubt});
 }
 
 std::string OfCamera(const FirstMapEvidence& evidence) {
@@ -283,6 +307,17 @@ std::string AdviceOnSkippedImages(const RunSummary& summary) {
          "was "
          "recorded with pliant track " +
          summary.description.input;
+}
+
+std::string DoubtOfPrior(const RunSummary& summary) {
+  const PriorCounts& prior = summary.prior;
+  if (prior.fall == 0 || static_cast<double>(prior.fall) < kMinDoubtShare * static_cast<double>(prior.compared))
+    return {};
+  const std::string numbers = " in " + std::to_string(prior.fall) + " of " + std::to_string(prior.compared) +
+                              " frames: is it of the other DepthPrior.kind?";
+  if (prior.by_brightness == 0) return "the depth prior falls where the map's values grow" + numbers;
+  return "the depth prior falls where by brightness it should grow" + numbers +
+         " Where the light is not at the camera, set WindowInit.light off";
 }
 
 std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summary) {

@@ -46,6 +46,15 @@ void AddTo(const Key& key, std::int64_t count, std::vector<std::pair<Key, std::i
     found->second += count;
 }
 
+void CountPrior(const FramePrior& prior, PriorCounts* counts) {
+  if (prior.is_used) ++counts->reestimated_maps;
+  if (!prior.agreement) return;
+  ++counts->compared;
+  if (prior.agreement == PriorAgreement::kAgrees) ++counts->agree;
+  if (prior.agreement == PriorAgreement::kFalls) ++counts->fall;
+  if (prior.by_brightness) ++counts->by_brightness;
+}
+
 bool IsFinite(const PointObservation& o) {
   return o.pixel.allFinite() && o.position.allFinite() && std::isfinite(o.ssim) && std::isfinite(o.sigma);
 }
@@ -227,6 +236,7 @@ void RunWriter::State::SerializeCounts(StateArchive& archive) {
   double elapsed_s = ElapsedS();
   archive(elapsed_s, summary.first_maps, summary.frames_read, summary.frames_tracked, summary.states, summary.submaps,
           summary.points, summary.observations, summary.losses);
+  archive.Members<5>(summary.prior);
   archive(median_errors_px, coverages, followed_coverages, latencies_ms, images, points, worlds, stage_total_ms,
           last_frame_idx, pose_covariances);
   if (archive.reads()) elapsed_before_s = elapsed_s;
@@ -312,6 +322,7 @@ void RunWriter::State::Count(const FrameReport& report) {
   summary.observations += static_cast<std::int64_t>(report.observations.size());
   summary.points = static_cast<std::int64_t>(points.size());
   for (const auto& [reason, count] : report.losses) AddTo(reason, count, &summary.losses);
+  CountPrior(report.prior, &summary.prior);
 }
 
 void RunWriter::State::AppendFrameRow(const FrameReport& report) {

@@ -270,6 +270,13 @@ void TellOfImages(const CheckedSequence& checked, std::span<TrackObserver* const
   }
 }
 
+// Once all frames are counted.
+void TellOfPrior(const RunSummary& summary, std::span<TrackObserver* const> observers) {
+  const std::string doubt = DoubtOfPrior(summary);
+  for (TrackObserver* observer : observers)
+    if (!doubt.empty()) observer->OnWarning(doubt);
+}
+
 // Null: no oracle is on.
 Result<std::unique_ptr<TrackingTruth>> TruthOf(const TrackOptions& options, const RunRequest& request,
                                                const Sequence& sequence) {
@@ -397,6 +404,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   Ending ending = loop.Run();
   if (live && watch.IsStopped()) ending = OfStopped(std::move(ending));
   TellOfImages(checked, observers, &warnings);
+  TellOfPrior(writer->summary(), observers);
   writer->SetWarnings(std::move(warnings));
   return FinishRun(*writer, live.get(), std::move(ending));
 }

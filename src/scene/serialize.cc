@@ -14,16 +14,17 @@ void Serialize(StateArchive& archive, CostTerm& cost) { archive.Members<2>(cost)
 void Serialize(StateArchive& archive, PointObservation& observation) { archive.Members<5>(observation); }
 void Serialize(StateArchive& archive, NewPoint& point) { archive.Members<3>(point); }
 void Serialize(StateArchive& archive, RefinedPoint& point) { archive.Members<2>(point); }
-void Serialize(StateArchive& archive, FirstMapEvidence& evidence) { archive.Members<10>(evidence); }
+void Serialize(StateArchive& archive, FirstMapEvidence& evidence) { archive.Members<11>(evidence); }
 void Serialize(StateArchive& archive, FirstMapFrames& frames) { archive.Members<3>(frames); }
 void Serialize(StateArchive& archive, SubmapMerge& merge) { archive.Members<3>(merge); }
+void Serialize(StateArchive& archive, FramePrior& prior) { archive.Members<3>(prior); }
 void Serialize(StateArchive& archive, FrameReport& report) {
   auto& [frame_idx, name, timestamp_s, state, note, submap, merge, cam_from_world, pose_covariance, observations,
          new_points, refined_points, first_map, tracked, optimized, lost, added, losses, costs,
-         median_reprojection_error_px, coverage, followed_coverage, stage_ms, latency_ms] = report;
+         median_reprojection_error_px, coverage, followed_coverage, prior, stage_ms, latency_ms] = report;
   archive(frame_idx, name, timestamp_s, state, note, submap, merge, cam_from_world, pose_covariance, observations);
   archive(new_points, refined_points, first_map, tracked, optimized, lost, added, losses, costs);
-  archive(median_reprojection_error_px, coverage, followed_coverage, stage_ms, latency_ms);
+  archive(median_reprojection_error_px, coverage, followed_coverage, prior, stage_ms, latency_ms);
 }
 
 }  // namespace pliant

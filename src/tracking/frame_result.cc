@@ -46,6 +46,7 @@ void AddSolution(const Submap& submap, const FrameResult& result, FrameReport* r
   report->new_points = result.update.new_points;
   report->added = static_cast<int>(report->new_points.size());
   report->refined_points = result.update.refined_points;
+  report->prior = result.update.prior;
   report->median_reprojection_error_px =
       result.update.median_reprojection_error_px.value_or(result.median_reprojection_error_px);
 }

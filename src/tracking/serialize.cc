@@ -20,7 +20,7 @@ void Serialize(StateArchive& archive, InitPosition& position) { archive.Members<
 void Serialize(StateArchive& archive, InitFrameState& frame) { archive.Members<3>(frame); }
 void Serialize(StateArchive& archive, InitRejectedPoint& point) { archive.Members<2>(point); }
 void Serialize(StateArchive& archive, InitMeasurements& measured) { archive.Members<11>(measured); }
-void Serialize(StateArchive& archive, InitOutcome& outcome) { archive.Members<14>(outcome); }
+void Serialize(StateArchive& archive, InitOutcome& outcome) { archive.Members<15>(outcome); }
 void Serialize(StateArchive& archive, FirstMap& first) { archive.Members<2>(first); }
 void Serialize(StateArchive& archive, MapInFrame& then) { archive.Members<2>(then); }
 void Serialize(StateArchive& archive, CandidateTrack& track) { archive.Members<5>(track); }

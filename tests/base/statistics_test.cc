@@ -30,6 +30,14 @@ TEST(Statistics, QuantilesLieBetweenTheNearestValues) {
   EXPECT_DOUBLE_EQ(Quantile(kValues, 0.9), 8.2);  // 0.7 of the way from 4 to 10
 }
 
+TEST(Statistics, RanksAreCorrelatedWhateverTheDistancesOfTheValues) {
+  EXPECT_DOUBLE_EQ(RankCorrelation(kValues, {16, 1, 1e6, 4}), 1);
+  EXPECT_DOUBLE_EQ(RankCorrelation(kValues, {-4, 0, -9, -3}), -1);
+  EXPECT_DOUBLE_EQ(RankCorrelation({1, 2, 3, 4}, {2, 1, 4, 3}), 0.6);
+  EXPECT_DOUBLE_EQ(RankCorrelation({1, 2, 2, 3}, {1, 5, 5, 9}), 1) << "equal values have the same rank";
+  EXPECT_EQ(RankCorrelation(kValues, {7, 7, 7, 7}), 0);
+}
+
 TEST(Statistics, OfNoValuesAre0) {
   EXPECT_EQ(Median({}), 0);
   EXPECT_EQ(Quantile({}, 0.5), 0);
@@ -37,6 +45,7 @@ TEST(Statistics, OfNoValuesAre0) {
   EXPECT_EQ(MedianDeviation({}), 0);
   EXPECT_EQ(Rms({}), 0);
   EXPECT_EQ(StandardError({}), 0);
+  EXPECT_EQ(RankCorrelation({}, {}), 0);
   EXPECT_EQ(StandardError({7}), 0) << "one value does not say how far values differ";
 }
 

@@ -82,6 +82,11 @@ TEST(Program, AStartFromADepthPriorTakesItsFolder) {
   const std::string text((std::istreambuf_iterator<char>(summary)), {});
   EXPECT_THAT(text, HasSubstr("\"depth_prior\": \"" + sequence + "/depth\""));
   EXPECT_THAT(text, HasSubstr("\"metric\": false"));
+  const std::string doubt = "is it of the other DepthPrior.kind?";
+  EXPECT_THAT(from_prior.err + from_prior.out, Not(HasSubstr(doubt)));
+  const Outcome of_other_kind = Pliant(track + "'" + sequence + "/depth' --overwrite");
+  EXPECT_EQ(of_other_kind.exit, 0) << of_other_kind.err;
+  EXPECT_THAT(of_other_kind.err, HasSubstr("where by brightness it should grow in 2 of 2 frames: " + doubt));
 }
 
 TEST(Program, TracksOfOtherImagesAreOneSentenceAndExitCodeOne) {

@@ -54,6 +54,13 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(first_map.evidence.depth_sigma, kFirstMap.evidence.depth_sigma);
   EXPECT_EQ(first_map.evidence.still_camera_error_ratio, kFirstMap.evidence.still_camera_error_ratio);
   EXPECT_EQ(first_map.evidence.focal_length_factor, kFirstMap.evidence.focal_length_factor);
+  EXPECT_TRUE(first_map.evidence.uses_prior);
+  const PriorCounts& prior = run->summary->prior;
+  EXPECT_EQ(prior.compared, 3);
+  EXPECT_EQ(prior.agree, 1);
+  EXPECT_EQ(prior.fall, 2);
+  EXPECT_EQ(prior.by_brightness, 1);
+  EXPECT_EQ(prior.reestimated_maps, 1);
   EXPECT_THAT(run->summary->states,
               UnorderedElementsAre(Pair(TrackingState::kWaitingForReference, 1), Pair(TrackingState::kTracking, 4)));
   EXPECT_NEAR(run->summary->median_coverage, kCoverage, kRoundOff);

@@ -27,7 +27,8 @@ inline constexpr FirstMapFrames kFirstMap = {12,
                                               .points = 6,
                                               .depth_sigma = 0.0125,
                                               .still_camera_error_ratio = 1.75,
-                                              .focal_length_factor = 0.6}};
+                                              .focal_length_factor = 0.6,
+                                              .uses_prior = true}};
 inline constexpr double kCoverage = 0.625;
 inline constexpr double kFollowedCoverage = 0.75;
 
@@ -46,6 +47,8 @@ inline FrameReport Report(int frame) {
   if (frame <= 2) report.first_map = kFirstMap;
   report.coverage = kCoverage;
   report.followed_coverage = kFollowedCoverage;
+  if (frame > 1)
+    report.prior = {frame % 2 == 0 ? PriorAgreement::kFalls : PriorAgreement::kAgrees, frame == 2, frame == 3};
   report.tracked = kPoints;
   for (int i = 0; i < kPoints; ++i) {
     const Eigen::Vector3d x(i - 2, 0.5 * i, 50 + 0.25 * frame);

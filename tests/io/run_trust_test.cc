@@ -12,6 +12,7 @@ namespace pliant {
 namespace {
 
 using testing::Contains;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Key;
 using testing::Not;
@@ -144,6 +145,43 @@ TEST(RunTrust, SaysThatDepthsAloneShowThatTheCameraMoves) {
   const std::string camera = Trust(Summary(noisy)).at("camera");
   EXPECT_THAT(camera, HasSubstr("1.12 times as large, too little to tell in so much noise"));
   EXPECT_THAT(camera, Not(HasSubstr("so it moved")));
+}
+
+TEST(RunTrust, SaysWhatBecameOfADepthPrior) {
+  RunSummary summary = Summary(kKnown);
+  summary.prior = {.compared = 60, .agree = 50, .fall = 3};
+  EXPECT_THAT(Trust(summary), Not(Contains(Key("depth_prior")))) << "no folder was given";
+  summary.description.depth_prior = "/priors";
+  EXPECT_EQ(Trust(summary).at("depth_prior"),
+            "A depth prior was given and had no effect: no map took depths from it. It agrees with the map in 50 of 60 "
+            "frames.");
+  summary.first_maps.front().evidence.uses_prior = true;
+  EXPECT_THAT(Trust(summary).at("depth_prior"), HasSubstr("given; 1 map, first or re-estimated, took depths from it."));
+  summary.prior.reestimated_maps = 2;
+  EXPECT_THAT(Trust(summary).at("depth_prior"), HasSubstr("given; 3 maps, first or re-estimated, took"));
+  summary.prior = {};
+  summary.first_maps.front().evidence.uses_prior = false;
+  EXPECT_THAT(Trust(summary).at("depth_prior"), HasSubstr("it counts where brightness is no depth cue"));
+}
+
+TEST(RunTrust, AsksWhetherTheKindOfADepthPriorIsRightWhereItFallsInNearlyAllFrames) {
+  RunSummary summary = Summary(kKnown);
+  summary.description.depth_prior = "/priors";
+  EXPECT_EQ(DoubtOfPrior(summary), "");
+  summary.prior = {.compared = 60, .agree = 5, .fall = 47};
+  EXPECT_EQ(DoubtOfPrior(summary), "");
+  summary.prior.fall = 48;
+  EXPECT_EQ(
+      DoubtOfPrior(summary),
+      "the depth prior falls where the map's values grow in 48 of 60 frames: is it of the other DepthPrior.kind?");
+  EXPECT_THAT(Trust(summary).at("depth_prior"), HasSubstr("The depth prior falls where the map's values grow in 48"));
+  EXPECT_THAT(Trust(summary).at("depth_prior"), Not(HasSubstr("agrees")));
+
+  summary.first_maps = {{0, 0, {.provisional = true, .points = 200, .uses_prior = true}}};
+  summary.prior.by_brightness = 60;
+  const std::string alone = Trust(summary).at("depth_prior");
+  EXPECT_THAT(alone, HasSubstr("nothing confirmed them. The depth prior falls where by brightness it should grow"));
+  EXPECT_THAT(alone, EndsWith("Where the light is not at the camera, set WindowInit.light off."));
 }
 
 TEST(RunTrust, DepthsThatAreHardlyBetterThanOneAreNoneToTrust) {

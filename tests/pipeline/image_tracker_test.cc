@@ -125,6 +125,35 @@ TEST(ImageTracker, StartsFromADepthPriorAndSaysThatItIsProvisional) {
             ErrorCode::kInvalidArgument);
 }
 
+// Of a map that is its own, brightness says whether it grows where it should.
+TEST(ImageTracker, ComparesADepthPriorThatTheMapIsOfWithBrightness) {
+  constexpr std::size_t kFirstFrames = 4;
+  for (const DepthPriorKind kind : {DepthPriorKind::kDepth, DepthPriorKind::kInverseDepth}) {
+    TrackOptions options = FixedImages();
+    options.tracker.init.method = InitMethod::kDepthPrior;
+    options.tracker.depth_prior.kind = kind;
+    auto tracker = ImageTracker::Create(Rendered().camera, std::nullopt, options);
+    ASSERT_TRUE(tracker.ok()) << tracker.status().message();
+    RenderedSequence sequence;
+    for (std::size_t k = 0; k < kFirstFrames; ++k) {
+      auto frame = *sequence.Next();
+      frame->depth_prior = Rendered().frames[k].depth;
+      const auto reports = tracker->Process(*frame);
+      ASSERT_TRUE(reports.ok());
+      ASSERT_EQ(reports->size(), 1U);
+      const FrameReport& report = reports->front();
+      if (k == 0) {
+        ASSERT_TRUE(report.first_map);
+        EXPECT_TRUE(report.first_map->evidence.uses_prior);
+        continue;
+      }
+      EXPECT_TRUE(report.prior.by_brightness);
+      EXPECT_EQ(report.prior.agreement,
+                kind == DepthPriorKind::kDepth ? PriorAgreement::kAgrees : PriorAgreement::kFalls);
+    }
+  }
+}
+
 TEST(ImageTracker, WithoutADepthPriorAStartFromItSaysSo) {
   TrackOptions options = FixedImages();
   options.tracker.init.method = InitMethod::kDepthPrior;

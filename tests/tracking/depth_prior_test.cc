@@ -6,10 +6,13 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
+#include <span>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "tracking/depth_prior/prior_agreement.h"
 #include "tracking/depth_prior/prior_distances.h"
 
 namespace pliant {
@@ -106,6 +109,52 @@ TEST(PriorDistances, IsNotAlignedToItsContraryNorToTooFewPoints) {
   const PreparedFrame right = FrameWith(0, [](double u, double v) { return 1.0 / Hilly(u, v); });
   PriorDistances of_few(right, TheCamera(), options);
   EXPECT_FALSE(of_few.AlignTo(few, Rigid3()));
+}
+
+// One whose kind is mistaken falls.
+TEST(PriorAgreement, IsThatOfDepthsByTheMap) {
+  const Map map = MapOn(Hilly);
+  const PreparedFrame inverse = FrameWith(0, [](double u, double v) { return 7.0 / Hilly(u, v) + 0.05; });
+  const PreparedFrame constant = FrameWith(0, [](double, double) { return 7.0; });
+  const auto agreement = [&](const PreparedFrame& frame, DepthPriorKind kind, std::size_t points) {
+    DepthPriorOptions options;
+    options.kind = kind;
+    return AgreementWithMap(PriorDistances(frame, TheCamera(), options), TheCamera(),
+                            std::span(map.landmarks).first(points), Rigid3());
+  };
+  const std::size_t all = map.landmarks.size();
+  EXPECT_EQ(agreement(inverse, DepthPriorKind::kInverseDepth, all), PriorAgreement::kAgrees);
+  EXPECT_EQ(agreement(inverse, DepthPriorKind::kDepth, all), PriorAgreement::kFalls);
+  for (const DepthPriorKind kind : {DepthPriorKind::kInverseDepth, DepthPriorKind::kDepth})
+    EXPECT_EQ(agreement(constant, kind, all), PriorAgreement::kUnclear) << "the shape of the image is no depth";
+  EXPECT_EQ(agreement(inverse, DepthPriorKind::kInverseDepth, 11), std::nullopt);
+  EXPECT_EQ(agreement(PreparedFrame(), DepthPriorKind::kInverseDepth, all), std::nullopt);
+}
+
+TEST(PriorAgreement, IsThatOfDepthsByBrightness) {
+  const PhotometricCalibration light;
+  const Map map = MapOn(Hilly);
+  const PreparedFrame depth = FrameWith(0, Hilly);
+  // What is near is bright; or all is as bright, and only the chance of a texture's colors is left.
+  const auto agreement = [&](DepthPriorKind kind, const Depth& brightness) {
+    cv::Mat image(kSide, kSide, CV_8UC1);
+    for (int v = 0; v < kSide; ++v)
+      for (int u = 0; u < kSide; ++u) image.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(brightness(u, v));
+    DepthPriorOptions options;
+    options.kind = kind;
+    return AgreementWithBrightness(PriorDistances(depth, TheCamera(), options), TheCamera(), map.landmarks,
+                                   LocalBrightness(image, {}), light);
+  };
+  const Depth of_light = [&](double u, double v) {
+    const Eigen::Vector3d ray = *TheCamera().Unproject({u, v});
+    const double distance = Hilly(u, v) * ray.norm() / ray.z();
+    return 255.0 * std::pow(30.0 / distance, 2.0 / light.gamma);
+  };
+  EXPECT_EQ(agreement(DepthPriorKind::kDepth, of_light), PriorAgreement::kAgrees);
+  EXPECT_EQ(agreement(DepthPriorKind::kInverseDepth, of_light), PriorAgreement::kFalls);
+  const Depth of_colors = [&](double u, double v) { return 120.0 + 60.0 * std::sin(u / 9.0) * std::sin(v / 7.0); };
+  for (const DepthPriorKind kind : {DepthPriorKind::kInverseDepth, DepthPriorKind::kDepth})
+    EXPECT_EQ(agreement(kind, of_colors), PriorAgreement::kUnclear);
 }
 
 }  // namespace

@@ -199,6 +199,29 @@ TEST_F(TrackerFromImages, TheEndOfASequenceWithoutAMapIsSaid) {
   EXPECT_TRUE(tracker.Finish().empty());
 }
 
+// The views of the first frames are nearly the same.
+TEST_F(TrackerFromImages, ADepthPriorIsComparedWithTheMap) {
+  constexpr int kFirstFrames = 4;
+  for (const DepthPriorKind kind : {DepthPriorKind::kDepth, DepthPriorKind::kInverseDepth}) {
+    TrackerOptions options;
+    options.init.method = InitMethod::kDepth;
+    options.depth_prior.kind = kind;
+    Tracker tracker = MakeTracker(options);
+    for (int i = 0; i < kFirstFrames; ++i) {
+      PreparedFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], {}, options);
+      frame.known_depth_mm = [depth = *depth_] { return depth; };
+      frame.depth_prior = *depth_;
+      const auto reports = tracker.Process(frame);
+      ASSERT_EQ(reports.size(), 1U);
+      const FramePrior& prior = reports.front().prior;
+      EXPECT_FALSE(prior.by_brightness);
+      EXPECT_FALSE(prior.is_used);
+      if (i == 0) continue;  // the map is made of it
+      EXPECT_EQ(prior.agreement, kind == DepthPriorKind::kDepth ? PriorAgreement::kAgrees : PriorAgreement::kFalls);
+    }
+  }
+}
+
 // Something passes over the left half of the view for four frames. The points there come back as the same points.
 TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
   constexpr int kFirstHidden = 4;

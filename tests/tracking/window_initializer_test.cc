@@ -302,6 +302,7 @@ TEST(WindowInitializer, UsesADepthPriorWhereBrightnessIsNoCue) {
     const InitOutcome outcome = sequence.Try(options);
     ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
     EXPECT_THAT(outcome.reason, HasSubstr("the depth prior was used"));
+    EXPECT_TRUE(outcome.uses_prior);
     for (const int t : {0, 60}) EXPECT_LT(sequence.ShapeError(outcome, t), kShape) << t;
     options.prior = Switch::kOff;
     EXPECT_THAT(sequence.Try(options, InitMoment::kLastFrame).reason, Not(HasSubstr("depth prior")));
@@ -317,6 +318,7 @@ TEST(WindowInitializer, ALightThatIsRightIsTrustedBeforeADepthPrior) {
   const InitOutcome with = sequence.Try({});
   ASSERT_EQ(with.points.size(), without.points.size());
   for (std::size_t i = 0; i < with.points.size(); ++i) EXPECT_EQ(with.points[i].position, without.points[i].position);
+  EXPECT_FALSE(with.uses_prior);
 }
 
 // A lens that shades the border, or a light that points ahead: known, it does no harm.

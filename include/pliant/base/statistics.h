@@ -22,6 +22,8 @@ double StandardError(const std::vector<double>& values);
 double MedianDeviation(std::vector<double> values);
 // By this a median of absolute errors becomes the standard deviation of a normal distribution.
 inline constexpr double kMedianToSigma = 1.4826;
+// Spearman's: -1 where `b` falls as `a` grows to 1 where it grows, 0 where one of them does not vary. Both are as long.
+double RankCorrelation(const std::vector<double>& a, const std::vector<double>& b);
 // Root of the mean square.
 double Rms(const std::vector<double>& values);
 

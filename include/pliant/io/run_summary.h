@@ -110,6 +110,15 @@ struct Latency {
   double max = 0;
 };
 
+// Frames whose depth prior was compared with what else says the depths of their points (FramePrior).
+struct PriorCounts {
+  std::int64_t compared = 0;
+  std::int64_t agree = 0;
+  std::int64_t fall = 0;
+  std::int64_t by_brightness = 0;     // of those compared
+  std::int64_t reestimated_maps = 0;  // that used it
+};
+
 // run.json.
 struct RunSummary {
   RunDescription description;
@@ -129,6 +138,7 @@ struct RunSummary {
   std::int64_t points = 0;
   std::int64_t observations = 0;
   std::vector<std::pair<std::string, std::int64_t>> losses;  // points given up, by reason
+  PriorCounts prior;
 
   double total_s = 0;
   double frames_per_second = 0;

@@ -22,4 +22,8 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
 // for others.
 std::string AdviceOnSkippedImages(const RunSummary& summary);
 
+// Where a depth prior falls in nearly all frames in which it should grow: the question whether its kind is right, with
+// the numbers; without a full stop. Empty for others.
+std::string DoubtOfPrior(const RunSummary& summary);
+
 }  // namespace pliant

@@ -104,6 +104,7 @@ struct FirstMapEvidence {
   double still_camera_error_ratio = 0;  // errors of a camera that stands still by those of one that moves (W14)
   double focal_length_factor = 1;  // on the calibration's, with which a rigid scene fits clearly better (W16); 1: none
   bool moves_by_depth = false;     // that ratio does not show that the camera moves, but the depths do (W18)
+  bool uses_prior = false;         // its depths are by a depth prior, too
 };
 
 // From which frame to which a first map was made; these and all between have their poses and points from it.
@@ -119,6 +120,20 @@ struct SubmapMerge {
   int submap = 0;
   int into = 0;  // the older one
   Sim3 into_from_submap;
+};
+
+// Whether a depth prior says the same of points' depths as what else says them (N4).
+enum class PriorAgreement {
+  kUnclear,
+  kAgrees,
+  kFalls,  // where they grow, as a prior of the other kind (DepthPrior.kind) does
+};
+
+// The depth prior of a frame.
+struct FramePrior {
+  std::optional<PriorAgreement> agreement = std::nullopt;  // nothing: there is none, or too little to compare it with
+  bool by_brightness = false;                              // with depths by brightness; else by the map
+  bool is_used = false;  // its depths, and those of frames before, by the map that was re-estimated in this frame
 };
 
 // Of a camera's center (world frame, map units) and its rotation (rad, camera frame).
@@ -154,6 +169,7 @@ struct FrameReport {
   // The same, counting points too that are followed and have no certain depth yet; in a blurred frame these are where
   // the last sharp one had them.
   std::optional<double> followed_coverage;
+  FramePrior prior;
   std::vector<std::pair<std::string, double>> stage_ms;  // wall time by stage; fixed order and names
   double latency_ms = 0;  // from the frame's arrival until everything was done that it asked for; 0: not measured
 };

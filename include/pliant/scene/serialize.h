@@ -25,6 +25,7 @@ void Serialize(StateArchive& archive, RefinedPoint& point);
 void Serialize(StateArchive& archive, FirstMapEvidence& evidence);
 void Serialize(StateArchive& archive, FirstMapFrames& frames);
 void Serialize(StateArchive& archive, SubmapMerge& merge);
+void Serialize(StateArchive& archive, FramePrior& prior);
 void Serialize(StateArchive& archive, FrameReport& report);
 
 }  // namespace pliant

@@ -22,7 +22,8 @@ FirstMapEvidence EvidenceOf(const InitOutcome& outcome) {
           .depth_spread = measured.depth_spread,
           .still_camera_error_ratio = measured.still_camera_error_ratio,
           .focal_length_factor = measured.focal_length_factor,
-          .moves_by_depth = outcome.moves_by_depth};
+          .moves_by_depth = outcome.moves_by_depth,
+          .uses_prior = outcome.uses_prior};
 }
 
 void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, const InitOutcome& outcome,

@@ -52,6 +52,7 @@ class PriorInitializer final : public Initializer {
       return outcome;
     }
     outcome.provisional = true;
+    outcome.uses_prior = true;
     outcome.reason = "provisional map of " + std::to_string(map.ids.size()) +
                      " points from the depth prior of one image, with " +
                      (shift ? "the shift that brightness says" : "no shift") + ": nothing has confirmed it";

@@ -342,6 +342,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   outcome->refinable = !outcome->deforming && options.refine_rigid == Switch::kOn;
   outcome->allows_deformation = window.deforming != nullptr;
   outcome->far_by_own_distance = demands.far_by_own_distance;
+  outcome->uses_prior = window.solution.window.cue == DistanceCue::kPrior;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
   outcome->reason = std::string(outcome->provisional ? "provisional" : "first") + " map of " +
                     std::to_string(points.ids.size()) + " points from a " + (window.IsRigid() ? "rigid" : "deforming") +
@@ -352,7 +353,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   if (window.deforming != nullptr)
     outcome->reason += "; the scene deforms, but so little that depths are more certain without a model of it";
   if (window.light_is_of_no_use) outcome->reason += "; brightness is no depth cue in these images and was not used";
-  if (window.solution.window.cue == DistanceCue::kPrior) outcome->reason += "; the depth prior was used";
+  if (outcome->uses_prior) outcome->reason += "; the depth prior was used";
   return Status::Ok();
 }
 

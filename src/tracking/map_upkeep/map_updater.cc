@@ -9,6 +9,7 @@
 
 #include "pliant/estimation/pose/camera_pose.h"
 #include "pliant/image/brightness.h"
+#include "tracking/depth_prior/prior_agreement.h"
 #include "tracking/depth_prior/prior_distances.h"
 #include "tracking/map_upkeep/common_motion.h"
 #include "tracking/map_upkeep/drifted_points.h"
@@ -146,7 +147,28 @@ MapUpdate MapUpdater::Update(const PreparedFrame& frame, Submap* submap, StageTi
     TakeReestimations(submap, &update);
   }
   if (GrowsMap()) Grow(frame, submap, times, &update);
+  if (!frame.depth_prior.empty()) {
+    const StageTimer timer(times, Stage::kInitialize);
+    ComparePrior(frame, *submap, &update.prior);
+  }
   return update;
+}
+
+// (N4) A map that was started from the prior agrees with it, right or wrong: what else there is says brightness, or
+// points that were re-estimated since.
+void MapUpdater::ComparePrior(const PreparedFrame& frame, const Submap& submap, FramePrior* prior) const {
+  const PriorDistances distances(frame, camera_, options_.depth_prior);
+  const bool is_of_prior = options_.init.method == InitMethod::kDepthPrior;
+  std::vector<Landmark> landmarks = submap.map.landmarks;
+  if (is_of_prior && options_.init.window.light == Switch::kOn) {
+    prior->by_brightness = true;
+    prior->agreement =
+        AgreementWithBrightness(distances, camera_, landmarks, LocalBrightness(frame.image, frame.mask.valid()),
+                                photometric_.value_or(PhotometricCalibration{.gamma = options_.init.window.gamma}));
+    return;
+  }
+  if (is_of_prior) std::erase_if(landmarks, [](const Landmark& landmark) { return landmark.times_reestimated == 0; });
+  prior->agreement = AgreementWithMap(distances, camera_, landmarks, submap.last_cam_from_world);
 }
 
 // Whether the map of a rigid scene is to be refined now; the history takes this frame.
@@ -176,6 +198,7 @@ void MapUpdater::TakeRigid(const Reestimation& reestimation, Submap* submap, Map
   submap->last_cam_from_world = cam_from_world;
   update->median_reprojection_error_px = MedianReprojectionErrorPx(camera_, cam_from_world, submap->Observations());
   if (!outcome.provisional) submap->provisional = false;
+  update->prior.is_used |= outcome.uses_prior;
   update->note = "the map was refined: " + outcome.reason;
 }
 
@@ -321,6 +344,7 @@ void MapUpdater::TakeAny(const Reestimation& reestimation, Submap* submap, MapUp
     if (submap->map.Find(point.id) == nullptr) Promote({point.id, point.position}, submap, update);
   if (submap->provisional) submap->depths.signal = std::max(submap->depths.signal, signal);
   if (!outcome.provisional && 2 * positions.size() >= submap->map.landmarks.size()) submap->provisional = false;
+  update->prior.is_used |= outcome.uses_prior;
   update->note = "the map was re-estimated: " + outcome.reason;
 }
 

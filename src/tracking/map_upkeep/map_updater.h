@@ -31,6 +31,7 @@ struct MapUpdate {
   std::vector<RefinedPoint> refined_points;            // in the order of the updates
   std::optional<double> median_reprojection_error_px;  // where it changed
   std::string note;                                    // one sentence; empty: nothing to say
+  FramePrior prior;
 };
 
 class MapUpdater {
@@ -82,6 +83,7 @@ class MapUpdater {
   void AddCandidates(const PreparedFrame& frame, Submap* submap) const;
   void Promote(const Candidates::CertainPoint& point, Submap* submap, MapUpdate* update) const;
 
+  void ComparePrior(const PreparedFrame& frame, const Submap& submap, FramePrior* prior) const;
   void RememberWindow(const PreparedFrame& frame, Submap* submap) const;
   void AddToWindow(InitFrame frame, Submap* submap) const;
   bool IsReestimationDue(int step, const Submap& submap) const;

@@ -150,6 +150,7 @@ struct InitOutcome {
   // (W15) Its sigmas are by the points' own distances, and look smaller than those of a map whose are by the median
   // one.
   bool far_by_own_distance = false;
+  bool uses_prior = false;  // its depths are by a depth prior, too
 };
 
 inline constexpr int kFewestPoints = 12;  // that a map is made of, whoever follows them
