@@ -28,8 +28,11 @@
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>
+#include <opencv2/videoio.hpp>
 #include <unistd.h>
 
+#include "pliant/datasets/open_sequence.h"
+#include "pliant/io/ply.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/simulation/simulator.h"
 #include "pliant/simulation/write_sequence.h"
@@ -63,17 +66,54 @@ std::filesystem::path WriteHeldScene(const std::filesystem::path& sequence, int 
   return written ? sequence : std::filesystem::path();
 }
 
-// The sequences are rendered once: 90 frames of 640x480, 30 of 1920x1080.
+// The images of a sequence as a video, as recordings of that size are, and the first frame's depth as a cloud.
+bool WriteAsVideo(const std::filesystem::path& sequence, const std::string& video, const std::string& cloud) {
+  auto opened = OpenSequence({.image_path = sequence});
+  if (!opened.ok()) return false;
+  const Camera& camera = (*opened)->camera();
+  const auto depth_mm = (*opened)->Depth(0);
+  if (!depth_mm.ok() || !depth_mm->has_value()) return false;
+  constexpr int kStep_px = 8;
+  std::vector<NewPoint> points;
+  for (int v = 0; v < camera.height(); v += kStep_px)
+    for (int u = 0; u < camera.width(); u += kStep_px)
+      if (const double z = (*depth_mm)->at<float>(v, u); z > 0)
+        if (const auto ray = camera.Unproject(Eigen::Vector2d(u, v)); ray && ray->z() > 0)
+          points.push_back({.id = PointId{std::ssize(points)}, .position = *ray * (z / ray->z())});
+  if (!WritePly(cloud, points).ok()) return false;
+  cv::VideoWriter writer(video, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 30,
+                         {camera.width(), camera.height()});
+  if (!writer.isOpened()) return false;
+  for (auto frame = (*opened)->Next(); frame.ok() && frame->has_value(); frame = (*opened)->Next())
+    writer.write((*frame)->image);
+  return true;
+}
+
+// Rendered once: 90 frames of 640x480 as images, 60 of 1920x1080 as a video.
 struct HeldScene {
-  int width, height, frames;
-  TemporaryFolder folder{"run_benchmark_" + std::to_string(width)};
-  std::filesystem::path path = WriteHeldScene(folder.Path("sequence"), frames, width, height);
+  HeldScene(int width, int height, int number, bool as_video) : frames(number) {
+    folder.emplace("run_benchmark_" + std::to_string(width));
+    const std::filesystem::path sequence = WriteHeldScene(folder->Path("sequence"), frames, width, height);
+    request.input.image_path = sequence;
+    if (as_video && !sequence.empty()) {
+      cloud_path = folder->Path("depth.ply");
+      const std::string video = folder->Path("video.mp4");
+      request.input.image_path = WriteAsVideo(sequence, video, cloud_path) ? video : "";
+      request.input.camera_path = sequence / "camera.yaml";
+    }
+    request.output_path = folder->Path("run");
+  }
+
+  int frames;
+  std::optional<TemporaryFolder> folder;
+  RunRequest request;      // without images: it could not be written
+  std::string cloud_path;  // empty: the sequence has depth images
 };
 
 const HeldScene& SceneOf(std::int64_t width) {
-  static const HeldScene small{640, 480, 90};
-  if (width == small.width) return small;
-  static const HeldScene large{1920, 1080, 30};
+  static const HeldScene small(640, 480, 90, false);
+  if (width == 640) return small;
+  static const HeldScene large(1920, 1080, 60, true);
   return large;
 }
 
@@ -120,23 +160,21 @@ void SetPoints(int count, TrackOptions* options) {
 
 void BM_Run(benchmark::State& state) {
   const HeldScene& scene = SceneOf(state.range(0));
-  if (scene.path.empty()) {
+  if (scene.request.input.image_path.empty()) {
     state.SkipWithError("the sequence could not be written");
     return;
   }
   TrackOptions options = MakeTrackOptions(Preset::kDefault);
   options.threads = static_cast<int>(state.range(2));
   options.tracker.init.method = InitMethod::kDepth;
+  options.tracker.init.depth.cloud_path = scene.cloud_path;
   if (const int points = static_cast<int>(state.range(1)); points != options.tracker.corners.max_corners)
     SetPoints(points, &options);
-  RunRequest request;
-  request.input.image_path = scene.path;
-  request.output_path = scene.folder.Path("run");
   Meter meter;
   const std::array<TrackObserver*, 1> observers = {&meter};
   for (auto _ : state) {
     meter = Meter();
-    const Result<RunSummary> run = RunTrack(request, options, observers);
+    const Result<RunSummary> run = RunTrack(scene.request, options, observers);
     if (!run.ok()) {
       state.SkipWithError(run.status().message().c_str());
       return;
@@ -277,10 +315,9 @@ void BM_Points(benchmark::State& state) {
   options.tracker.init.method = InitMethod::kDepth;
   SetPoints(static_cast<int>(state.range(0)), &options);
   const HeldScene& scene = SceneOf(1920);
-  RunRequest request;
-  request.input.image_path = scene.path;
+  options.tracker.init.depth.cloud_path = scene.cloud_path;
+  RunRequest request = scene.request;
   request.input.end = 12;
-  request.output_path = scene.folder.Path("run");
   PointMeter meter;
   const std::array<TrackObserver*, 1> observers = {&meter};
   for (auto _ : state) {
