@@ -26,6 +26,10 @@ std::string AssumedCameraName(double horizontal_fov_deg) {
 
 bool IsAssumedCamera(const std::string& camera_path) { return camera_path.starts_with(kPrefix); }
 
+CameraOrigin OriginOf(const std::string& camera_path) {
+  return IsAssumedCamera(camera_path) ? CameraOrigin::kAssumed : CameraOrigin::kGiven;
+}
+
 Result<Camera> MakeAssumedCamera(const std::string& name, int width, int height) {
   double fov_deg = 0;
   const bool is_number = IsAssumedCamera(name) && ParseFinite(std::string_view(name).substr(kPrefix.size()), &fov_deg);

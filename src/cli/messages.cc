@@ -13,7 +13,7 @@ namespace pliant::cli {
 namespace {
 
 constexpr std::size_t kLongestSentence = 400;
-constexpr std::size_t kLongestEnd = 280;  // of a longer one, in whole clauses: what to do stands there
+constexpr std::size_t kLongestEnd = 310;  // of a longer one, in whole clauses: what to do stands there
 constexpr std::size_t kKeptEnd = 120;     // where its last clause is longer than that
 constexpr std::string_view kDots = " ... ";
 

@@ -7,10 +7,12 @@
 
 namespace pliant {
 
-std::string AdviceOnUncertainDepth(double median_parallax_deg) {
-  if (median_parallax_deg < kEnoughParallaxDeg) return "give more frames, or move the camera sideways or forwards";
-  return "parallax is not what is missing: check the calibration, mask what moves by itself (tools), or choose a part "
-         "with sharper images, or one in which the scene deforms more slowly than the camera moves";
+std::string AdviceOnUncertainDepth(double median_parallax_deg, CameraOrigin camera_origin) {
+  if (median_parallax_deg < kEnoughParallaxDeg) return "move the camera sideways or forwards";
+  return std::string(camera_origin == CameraOrigin::kAssumed
+                         ? "the assumed field of view may be wrong: calibrate or assume another"
+                         : "parallax is not what is missing: check the calibration") +
+         ", mask what moves by itself (tools), or choose a part with sharper images or slower deformation";
 }
 
 std::optional<double> ReprojectionErrorPx(const Camera& camera, const Rigid3& cam_from_world,

@@ -81,9 +81,10 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
     : options_(Completed(options)),
       oracle_poses_(std::make_unique<OraclePoses>(options.oracle, inputs.truth, NominalDepth(options.init))),
       tracks_(MakeTrackSource(options_, seed, threads, inputs)),
-      bootstrapper_(std::make_unique<Bootstrapper>(
-          camera, options_, threads, HandoverOfFirstMap(options_, inputs), inputs.photometric, tracks_.get(),
-          oracle_poses_.get(), MakeFirstInitializer(options_, seed, inputs), MakeAlternative(options_, seed, inputs))),
+      bootstrapper_(std::make_unique<Bootstrapper>(camera, options_, threads, HandoverOfFirstMap(options_, inputs),
+                                                   inputs.photometric, inputs.camera_origin, tracks_.get(),
+                                                   oracle_poses_.get(), MakeFirstInitializer(options_, seed, inputs),
+                                                   MakeAlternative(options_, seed, inputs))),
       frame_tracker_(std::make_unique<FrameTracker>(camera, options_, threads, tracks_.get(), oracle_poses_.get(),
                                                     inputs.extensions.cost)),
       relocalizer_(std::make_unique<Relocalizer>(camera, options_, tracks_->abilities(), frame_tracker_.get())),

@@ -14,6 +14,7 @@
 
 #include "cli/frame_list.h"
 #include "cli/messages.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant::cli {
 enum class Fruit { kApple, kPear };
@@ -262,6 +263,21 @@ TEST(CommandLine, AMessageThatIsTooLongIsCutBetweenWordsAndKeepsItsAdvice) {
   testing::internal::CaptureStderr();
   SayError("there is no map" + words);  // one clause
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr(" because ... because "));
+}
+
+TEST(CommandLine, WhatToDoIsKeptOfALongReasonWhyThereIsNoMap) {
+  const std::string advice = AdviceOnUncertainDepth(26.3, CameraOrigin::kAssumed) +
+                             "; give more frames; --Init.method gated would have made a map by frame 10044, right only "
+                             "if the camera moves and the scene hardly deforms";
+  testing::internal::CaptureStderr();
+  SayError(
+      "the sequence ended without a first map: the depth of 71 of 254 points is known to 2.0 % of the median depth, at "
+      "least 40 and 65 % must be; the median parallax is 26.3 deg; given up after 44 frames from one reference; " +
+      advice);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_LE(said.size(), 401U);
+  EXPECT_THAT(said, HasSubstr(": the sequence ended without a first map: "));
+  EXPECT_THAT(said, testing::EndsWith(" ... " + advice + "\n"));
 }
 
 TEST(CommandLine, AProgramThatDoesOneThingSpeaksUnderItsOwnName) {

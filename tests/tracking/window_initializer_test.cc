@@ -20,6 +20,8 @@
 namespace pliant {
 namespace {
 
+using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -110,19 +112,45 @@ TEST(WindowInitializer, MakesNoMapOfPointsThatAreAllWrongBetweenTheViews) {
   EXPECT_TRUE(outcome.points.empty());
 }
 
-TEST(WindowInitializer, MakesNoMapOnWhichTheSamplesDoNotAgree) {
-  const WavingTracks sequence(32);
+// Demands that no window meets.
+WindowInitOptions Unattainable() {
   WindowInitOptions options;
   options.certain_depth_sigma = options.max_depth_sigma = options.last_depth_sigma = 0.001;
   options.provisional = Switch::kOff;
-  const InitOutcome last = sequence.Try(options, InitMoment::kLastFrame);
+  return options;
+}
+
+TEST(WindowInitializer, MakesNoMapOnWhichTheSamplesDoNotAgree) {
+  const WavingTracks sequence(32);
+  const InitOutcome last = sequence.Try(Unattainable(), InitMoment::kLastFrame);
   EXPECT_EQ(last.decision, InitDecision::kNewReference);
   EXPECT_THAT(last.reason, HasSubstr("points is known to 0.1 % of the median depth"));
   const std::string before = "the median parallax is ";
   const std::size_t at = last.reason.find(before);
   ASSERT_NE(at, std::string::npos) << last.reason;
-  EXPECT_THAT(last.reason,
-              HasSubstr("deg: " + AdviceOnUncertainDepth(std::stod(last.reason.substr(at + before.size())))));
+  const std::string advice = AdviceOnUncertainDepth(std::stod(last.reason.substr(at + before.size())));
+  EXPECT_THAT(last.reason, EndsWith("; given up after 31 frames from one reference; " + advice + "; give more frames"));
+}
+
+TEST(WindowInitializer, AdvisesMoreFramesWhereTheSequenceEndsBeforeAReferenceIsSpent) {
+  const std::string more = "; give more frames";
+  EXPECT_THAT(WavingTracks(4).Try({}, InitMoment::kLastFrame).reason,
+              AllOf(HasSubstr("takes at least"), EndsWith(more)));
+  WindowInitOptions options = Unattainable();
+  options.last_frame = 31;
+  EXPECT_THAT(WavingTracks(32).Try(options, InitMoment::kLastFrame).reason, Not(HasSubstr(more)));
+  options.last_frame = 32;
+  EXPECT_THAT(WavingTracks(32).Try(options, InitMoment::kLastFrame).reason, HasSubstr(more));
+}
+
+TEST(WindowInitializer, NamesAnAssumedFieldOfViewAsTheLikelyCause) {
+  const WavingTracks sequence(61);
+  InitInput input{sequence.camera, sequence.frames, {}, InitMoment::kLastFrame};
+  const auto initializer = MakeWindowInitializer(Unattainable(), kNominalMm);
+  const std::string assumed = "; the assumed field of view may be wrong: calibrate or assume another";
+  EXPECT_THAT(initializer->Try(input).reason, Not(HasSubstr(assumed)));
+  input.camera_origin = CameraOrigin::kAssumed;
+  EXPECT_THAT(initializer->Try(input).reason, HasSubstr(assumed));
 }
 
 TEST(WindowInitializer, AdvisesMoreMotionWhereParallaxIsSmallAlone) {

@@ -12,9 +12,15 @@
 
 namespace pliant {
 
+enum class CameraOrigin {
+  kGiven,    // a calibration, right or wrong
+  kAssumed,  // a field of view alone
+};
+
 // The name of a camera with this horizontal field of view, degrees.
 std::string AssumedCameraName(double horizontal_fov_deg);
 bool IsAssumedCamera(const std::string& camera_path);
+CameraOrigin OriginOf(const std::string& camera_path);
 
 // SIMPLE_PINHOLE with the optical axis in the middle of the image. Fails with kInvalidArgument unless the name says a
 // field of view of 10 to 150 degrees.

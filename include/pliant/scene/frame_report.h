@@ -18,6 +18,7 @@
 
 #include "pliant/base/ids.h"
 #include "pliant/base/options.h"
+#include "pliant/camera/assumed_camera.h"
 #include "pliant/camera/camera.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/geometry/sim3.h"
@@ -89,8 +90,8 @@ inline constexpr double kMinDepthSignal = 3.0;
 inline constexpr double kMinProvisionalSignal = 2.0;
 // Median parallax from which depths that are not known do not lack motion of the camera.
 inline constexpr double kEnoughParallaxDeg = 3.0;
-// What to do about depths that are not certain with that parallax: a part of a sentence.
-std::string AdviceOnUncertainDepth(double median_parallax_deg);
+// What to do about depths that are not certain with that parallax: the last clause of a sentence.
+std::string AdviceOnUncertainDepth(double median_parallax_deg, CameraOrigin camera_origin = CameraOrigin::kGiven);
 
 // What a first map rests on, as it was measured when it was made; 0 where its method does not measure it.
 struct FirstMapEvidence {

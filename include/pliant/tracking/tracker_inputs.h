@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "pliant/camera/assumed_camera.h"
 #include "pliant/camera/photometric_calibration.h"
 #include "pliant/scene/pixel_track.h"
 #include "pliant/tracking/extensions.h"
@@ -23,6 +24,7 @@ struct TrackerInputs {
   // Of the camera, where it is known; first maps that use the light then trust it.
   std::optional<PhotometricCalibration> photometric = std::nullopt;
   TrackerExtensions extensions = {};
+  CameraOrigin camera_origin = CameraOrigin::kGiven;  // an assumed one is named where there is no first map
 };
 
 }  // namespace pliant

@@ -27,14 +27,16 @@ bool DecidesNothing(const InitOutcome& outcome) {
 }  // namespace
 
 Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads, int handover_frames,
-                           const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks,
-                           OraclePoses* oracle_poses, std::shared_ptr<const Initializer> initializer,
+                           const std::optional<PhotometricCalibration>& photometric, CameraOrigin camera_origin,
+                           TrackSource* tracks, OraclePoses* oracle_poses,
+                           std::shared_ptr<const Initializer> initializer,
                            std::shared_ptr<const Initializer> alternative)
     : camera_(camera),
       options_(options),
       threads_(threads),
       handover_frames_(handover_frames),
       photometric_(photometric),
+      camera_origin_(camera_origin),
       tracks_(tracks),
       oracle_poses_(oracle_poses),
       initializer_(std::move(initializer)),
@@ -171,7 +173,7 @@ Bootstrapper::Answer Bootstrapper::AskInitializers(const std::vector<InitFrame>&
                                                    const Initializer* alternative) const {
   Answer answer{.frames = frames.size(), .last = last};
   answer.outcome = initializer_->Try({camera_, frames, reference_depth_mm, moment, threads_, known_depths, photometric_,
-                                      doubts.camera_may_stand_still, doubts.was_ambiguous});
+                                      doubts.camera_may_stand_still, doubts.was_ambiguous, camera_origin_});
   const bool is_settled = answer.outcome.decision == InitDecision::kMap || answer.outcome.ambiguous;
   if (alternative != nullptr && !is_settled)
     answer.alternative = alternative->Try({camera_, frames, {}, moment, threads_, {}, photometric_});
@@ -240,7 +242,7 @@ void Bootstrapper::TakeAlternative(const Answer& answer) {
     return;
   would_start_ = "--Init.method " + std::string(alternative_->name()) + " would have made a map by frame " +
                  std::to_string(answer.last.frame_idx) +
-                 ", which is right only if the camera moves and the scene hardly deforms";
+                 ", right only if the camera moves and the scene hardly deforms";
 }
 
 // There is a map, or it is known that it takes too much for granted.

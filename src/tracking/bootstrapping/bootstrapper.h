@@ -50,8 +50,9 @@ class Bootstrapper {
   // which may be null, takes more for granted than `initializer`: it makes no map, but is asked whether it would
   // (WouldStart).
   Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads, int handover_frames,
-               const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks, OraclePoses* oracle_poses,
-               std::shared_ptr<const Initializer> initializer, std::shared_ptr<const Initializer> alternative);
+               const std::optional<PhotometricCalibration>& photometric, CameraOrigin camera_origin,
+               TrackSource* tracks, OraclePoses* oracle_poses, std::shared_ptr<const Initializer> initializer,
+               std::shared_ptr<const Initializer> alternative);
 
   // The next frame; `submap` has no landmarks yet.
   BootstrapStep Process(const PreparedFrame& frame, Submap* submap, StageTimes* times);
@@ -125,6 +126,7 @@ class Bootstrapper {
   int threads_;
   int handover_frames_;
   std::optional<PhotometricCalibration> photometric_;
+  CameraOrigin camera_origin_;
   TrackSource* tracks_;
   OraclePoses* oracle_poses_;
   std::shared_ptr<const Initializer> initializer_;

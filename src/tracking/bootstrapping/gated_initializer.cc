@@ -382,8 +382,7 @@ class GatedInitializer final : public Initializer {
     } else if (status = attempt.Run(); !status.ok()) {
       outcome.decision = since >= options_.max_window ? InitDecision::kNewReference : InitDecision::kWait;
       outcome.reason = status.message();
-      if (since >= options_.max_window)
-        outcome.reason += "; given up after " + std::to_string(since) + " frames from one reference";
+      if (since >= options_.max_window) outcome.reason = WithGivenUp(outcome.reason, since);
     }
     return outcome;
   }

@@ -208,4 +208,10 @@ Status FillRigidMap(const InitInput& input, const InitialMap& map, const std::ve
   return Status::Ok();
 }
 
+std::string WithGivenUp(const std::string& reason, int frames) {
+  const std::size_t last = std::min(reason.rfind("; "), reason.size());
+  return reason.substr(0, last) + "; given up after " + std::to_string(frames) + " frames from one reference" +
+         reason.substr(last);
+}
+
 }  // namespace pliant

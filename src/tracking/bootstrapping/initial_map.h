@@ -93,4 +93,8 @@ Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, doubl
 Status FillRigidMap(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
                     std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome);
 
+// Why a reference is given up after so many frames: what the last attempt said, whose last clause, which says what to
+// do, stays the last one.
+std::string WithGivenUp(const std::string& reason, int frames);
+
 }  // namespace pliant

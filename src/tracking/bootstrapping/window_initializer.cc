@@ -81,11 +81,14 @@ class WindowInitializer final : public Initializer {
     if (!status.ok()) {
       outcome.decision = last ? InitDecision::kNewReference : InitDecision::kWait;
       outcome.reason = status.message();
-      if (last) outcome.reason += "; given up after " + std::to_string(since) + " frames from one reference";
+      if (last) outcome.reason = WithGivenUp(outcome.reason, since);
     }
     if (const double factor = outcome.measured.focal_length_factor; factor != 1.0)
       outcome.reason += "; the images contradict the focal length: a rigid scene fits clearly better with about " +
-                        Digits(factor, 2) + " times it, check the calibration";
+                        Digits(factor, 2) + " times it, " +
+                        (input.camera_origin == CameraOrigin::kAssumed ? "calibrate or assume another field of view"
+                                                                       : "check the calibration");
+    if (!status.ok() && ends && since < options_.last_frame) outcome.reason += "; give more frames";
     return outcome;
   }
 
@@ -119,8 +122,9 @@ class WindowInitializer final : public Initializer {
     const std::string why = contradicts ? "a rigid motion does not explain the images with this focal length"
                                         : "camera and scene could not be told apart before this reference";
     if (outcome->provisional)
-      return {ErrorCode::kDegenerate, "the depths are not as certain as demanded, and " + why + "; " +
-                                          AdviceOnUncertainDepth(outcome->measured.median_parallax_deg)};
+      return {ErrorCode::kDegenerate,
+              "the depths are not as certain as demanded, and " + why + "; " +
+                  AdviceOnUncertainDepth(outcome->measured.median_parallax_deg, input.camera_origin)};
     if (!contradicts) return Status::Ok();
     if (options_.provisional == Switch::kOff) return {ErrorCode::kInsufficient, why};
     outcome->provisional = true;

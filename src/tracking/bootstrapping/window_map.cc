@@ -139,7 +139,7 @@ Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const M
                                         " points is known to " + Digits(100.0 * demands.certain_sigma, 1) +
                                         " % of the median depth, at least " + needed +
                                         " must be; the median parallax is " + Digits(median_parallax_deg, 1) +
-                                        " deg: " + AdviceOnUncertainDepth(median_parallax_deg)};
+                                        " deg; " + AdviceOnUncertainDepth(median_parallax_deg, input.camera_origin)};
 }
 
 // The points in all frames of the input, fixed; poses and coefficients start between those of the solved views.
@@ -200,9 +200,10 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
 // passes for motion, and so does tissue that swells; of a rigid scene nothing else asks for that (W14). Depths that
 // hardly stand out are as wrong as one constant depth unless their sigmas are small, however long the window has
 // waited.
-Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, const WindowInitOptions& options,
-                        InitOutcome* outcome) {
+Status CheckDepthSignal(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
+                        const WindowInitOptions& options, InitOutcome* outcome) {
   const InitMeasurements& measured = outcome->measured;
+  const std::string advice = AdviceOnUncertainDepth(measured.median_parallax_deg, input.camera_origin);
   outcome->provisional = demands.provisional || window.is_contradicted || measured.DepthSignal() < kMinDepthSignal;
   const bool stands_out =
       measured.DepthSignal() >= (demands.far_by_own_distance ? kMinDepthSignal : kMinProvisionalSignal);
@@ -216,13 +217,11 @@ Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, c
             "the depths hardly stand out, and a rigid motion does not explain all: the errors of neighbors have a "
             "correlation of " +
                 Digits(window.solution.residual_correlation, 2) +
-                ", the scene may deform before a camera that stands still; " +
-                AdviceOnUncertainDepth(measured.median_parallax_deg)};
+                ", the scene may deform before a camera that stands still; " + advice};
   if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
   return {stands_out ? ErrorCode::kInsufficient : ErrorCode::kDegenerate,
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and are known to " +
-              Digits(100.0 * measured.median_depth_sigma, 1) + " %: hardly better than one constant depth; " +
-              AdviceOnUncertainDepth(measured.median_parallax_deg)};
+              Digits(100.0 * measured.median_depth_sigma, 1) + " %: hardly better than one constant depth; " + advice};
 }
 
 // (W21) Linear sigmas of a deforming window know of one minimum alone. Where those of a part of its frames say that
@@ -238,7 +237,8 @@ Status CheckLaterPart(const InitInput& input, const SolvedWindow& window, const 
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and seem known to " +
               Digits(100.0 * measured.median_depth_sigma, 1) +
               " %, but by the later two thirds of the frames that is too little by a factor of " +
-              Digits(measured.sigma_factor, 1) + "; " + AdviceOnUncertainDepth(measured.median_parallax_deg)};
+              Digits(measured.sigma_factor, 1) + "; " +
+              AdviceOnUncertainDepth(measured.median_parallax_deg, input.camera_origin)};
 }
 
 // The points not in the map, each with why.
@@ -334,7 +334,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
                                           " points agree with the frames between those of the window (at least " +
                                           std::to_string(needed) + " must)"};
   measure();
-  if (Status status = CheckDepthSignal(window, demands, options, outcome); !status.ok()) return status;
+  if (Status status = CheckDepthSignal(input, window, demands, options, outcome); !status.ok()) return status;
   if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
   if (Status status = CheckLaterPart(input, window, points, options, nominal_depth_mm, outcome); !status.ok())
     return status;

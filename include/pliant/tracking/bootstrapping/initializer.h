@@ -20,6 +20,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "pliant/base/ids.h"
+#include "pliant/camera/assumed_camera.h"
 #include "pliant/camera/camera.h"
 #include "pliant/camera/photometric_calibration.h"
 #include "pliant/geometry/rigid3.h"
@@ -64,6 +65,7 @@ struct InitInput {
   std::optional<PhotometricCalibration> photometric = std::nullopt;  // where it is known
   bool camera_may_stand_still = false;  // as an answer since the reference said (InitOutcome)
   bool was_ambiguous = false;           // when an earlier reference, since the last map, was given up (InitOutcome)
+  CameraOrigin camera_origin = CameraOrigin::kGiven;
 };
 
 enum class InitDecision {
