@@ -136,7 +136,7 @@ std::vector<std::string> FigurePaths(const std::string& path, bool has_pairs) {
 // Nothing where they can be written; else an exit code.
 std::optional<int> CheckFigures(const CommandLine& line, const std::vector<std::string>& paths, ExistingFile existing) {
   for (const std::string& path : paths) {
-    if (const Status status = CheckEnding(ViewOutput::kFigure, path); !status.ok())
+    if (const Status status = CheckEnding(ViewOutput::kFigure, path, "--figure"); !status.ok())
       return line.UsageError(status.message());
     if (const Status status = CheckCalibrationOutput(path, existing); !status.ok())
       return line.Failure(status.message());

@@ -62,7 +62,7 @@ int CompareCommand(std::span<const std::string> args) {
   if (const auto exit = line.Resolve(table)) return *exit;
   if (const Status status = CheckCompareRequest(request); !status.ok()) return line.UsageError(status.message());
   if (!figure_path.empty())
-    if (const Status status = CheckEnding(ViewOutput::kFigure, figure_path); !status.ok())
+    if (const Status status = CheckEnding(ViewOutput::kFigure, figure_path, "--figure"); !status.ok())
       return line.UsageError(status.message());
 
   const Result<RunComparison> comparison = [&] {

@@ -66,8 +66,7 @@ std::string CheckArguments(const ReportArguments& arguments, std::vector<int>* f
   const ViewOutput output = !arguments.figure.empty() ? ViewOutput::kFigure
                             : arguments.video         ? ViewOutput::kFilm
                                                       : ViewOutput::kPage;
-  const Status ending = CheckEnding(output, arguments.output_path);
-  return ending.ok() ? "" : "--" + ending.message();
+  return CheckEnding(output, arguments.output_path, "--output_path").message();
 }
 
 void SayNotes(const std::vector<std::string>& notes) {

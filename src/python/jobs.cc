@@ -104,7 +104,7 @@ py::dict CalibrationDict(const CalibrateSummary& summary) {
 py::dict Calibrate(const py::dict& request, const py::object& options, const py::object& on_progress) {
   const auto calibrate_options = OptionsOf<CalibrateOptions>(options);
   const std::string figure = Text(request, "figure");
-  if (!figure.empty()) RaiseUnlessOk(CheckEnding(ViewOutput::kFigure, figure));
+  if (!figure.empty()) RaiseUnlessOk(CheckEnding(ViewOutput::kFigure, figure, "figure"));
   RaiseUnlessOk(CheckCalibrationOutput(figure, ExistingOf(request)));
   const CalibrateRequest calibrate_request{.image_path = Text(request, "image_path"),
                                            .board = ValueOf(ParseBoard(Text(request, "board"))),
@@ -244,7 +244,7 @@ std::string Compare(const py::dict& request, const py::object& options, const py
                                        .camera_path = Text(request, "camera_path")};
   const std::string output_path = Text(request, "output_path");
   const std::string figure = Text(request, "figure_path");
-  if (!figure.empty()) RaiseUnlessOk(CheckEnding(ViewOutput::kFigure, figure));
+  if (!figure.empty()) RaiseUnlessOk(CheckEnding(ViewOutput::kFigure, figure, "figure"));
   Interrupt interrupt;
   const auto comparison = ValueOf(WithoutGil(
       &interrupt, [&] { return CompareRuns(compare_request, evaluation_options, Telling(on_progress, &interrupt)); }));

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <string_view>
 #include <vector>
 
 #include "pliant/base/text.h"
@@ -32,14 +31,14 @@ OutputKind KindOf(ViewOutput output) {
 
 }  // namespace
 
-Status CheckEnding(ViewOutput output, const std::string& output_path) {
+Status CheckEnding(ViewOutput output, const std::string& path, std::string_view argument) {
   const OutputKind kind = KindOf(output);
-  const std::string ending = std::filesystem::path(output_path).extension().string();
+  const std::string ending = std::filesystem::path(path).extension().string();
   if (std::ranges::find(kind.endings, ending) != kind.endings.end()) return Status::Ok();
   std::string endings;
   for (const std::string_view known : kind.endings) endings += (endings.empty() ? "" : " or ") + std::string(known);
   return {ErrorCode::kInvalidArgument,
-          "output_path is " + Quoted(output_path) + "; " + std::string(kind.name) + " ends with " + endings};
+          std::string(argument) + " is " + Quoted(path) + "; " + std::string(kind.name) + " ends with " + endings};
 }
 
 }  // namespace pliant

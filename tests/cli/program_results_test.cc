@@ -80,7 +80,7 @@ TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
 
   const Outcome ending = Pliant("compare --run a --run b --sequence c --figure d.gif");
   EXPECT_EQ(ending.exit, 2);
-  EXPECT_EQ(std::count(ending.err.begin(), ending.err.end(), '\n'), 1) << ending.err;
+  EXPECT_EQ(ending.err, "pliant compare: --figure is 'd.gif'; a figure ends with .png or .svg or .pdf\n");
 
   const Outcome pairs = Pliant("compare --run a --run b --run c --sequence d --sequence e");
   EXPECT_EQ(pairs.exit, 2);
@@ -367,7 +367,8 @@ TEST(Program, ReportSaysWhatItCannotWrite) {
     return outcome.err;
   };
   EXPECT_THAT(error("-o report.png", 2), HasSubstr("a report ends with .html or .htm"));
-  EXPECT_THAT(error("--figure 3 -o figure.html", 2), HasSubstr("a figure ends with .png or .svg or .pdf"));
+  EXPECT_THAT(error("--figure 3 -o figure.html", 2),
+              HasSubstr("--output_path is 'figure.html'; a figure ends with .png or .svg or .pdf"));
   EXPECT_THAT(error("--video -o film.avi", 2), HasSubstr("a film ends with .mp4"));
   EXPECT_THAT(error("--video --figure 3 -o film.mp4", 2), HasSubstr("give one of them"));
   EXPECT_THAT(error("--figure 3,x -o figure.png", 2), HasSubstr("give frame numbers"));

@@ -166,7 +166,7 @@ class Jobs(TestCase):
                 pliant.compare(*arguments, output_path=self.folder / "nothing")
             self.assertIn(message, sentence(self, caught.exception))
         self.assertFalse((self.folder / "nothing").exists())
-        with self.assertRaisesRegex(ValueError, "a figure ends with .png or .svg or .pdf"):
+        with self.assertRaisesRegex(ValueError, "^figure is '.*'; a figure ends with .png or .svg or .pdf"):
             pliant.compare(RUN, SEQUENCE, figure=self.folder / "figure.gif")
 
     def test_what_was_exported_is_imported(self):

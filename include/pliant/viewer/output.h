@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "pliant/base/status.h"
 
@@ -12,7 +13,8 @@ namespace pliant {
 
 enum class ViewOutput { kPage, kFigure, kFilm };
 
-// Fails with kInvalidArgument where the ending of `output_path` is not one of those that such a file may have.
-Status CheckEnding(ViewOutput output, const std::string& output_path);
+// Fails with kInvalidArgument where the ending of `path` is not one of those that such a file may have. `argument`: the
+// name by which it was given.
+Status CheckEnding(ViewOutput output, const std::string& path, std::string_view argument = "output_path");
 
 }  // namespace pliant
