@@ -8,7 +8,16 @@
 #include <span>
 #include <string>
 
+#include "pliant/base/version.h"
+
 namespace pliant::cli {
+
+// What pliant --version says of the program: the version, and behind it the commit, which main.cc alone knows and puts
+// here, so that a commit makes nothing else anew.
+inline std::string& ProgramVersion() {
+  static std::string version = kVersion;
+  return version;
+}
 
 int CalibrateCommand(std::span<const std::string> args);
 int TrackCommand(std::span<const std::string> args);

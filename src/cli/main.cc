@@ -80,8 +80,7 @@ int Run(std::span<const std::string> args) {
     return kExitOk;
   }
   if (name == "--version") {
-    std::cout << "pliant " << kVersion << kCommitText << "\nbuilt by " << BuildText() << "\nwith " << LibrariesText()
-              << "\n";
+    std::cout << "pliant " << ProgramVersion() << "\nbuilt by " << BuildText() << "\nwith " << LibrariesText() << "\n";
     return kExitOk;
   }
   std::vector<std::string> names;
@@ -135,6 +134,7 @@ int main(int argc, char** argv) {
   pliant::cli::QuietVideoDecoder();
   pliant::cli::SurviveFileSizeLimit();
   try {
+    pliant::cli::ProgramVersion() += kCommitText;
     const int exit = pliant::cli::Run(args);
     if (std::cout.flush() || exit != pliant::cli::kExitOk) return exit;
     pliant::cli::SayError("cannot write to standard output; is the disk full?");

@@ -92,7 +92,8 @@ int WriteRunBundle(const CommandLine& line, const ReportArguments& arguments) {
                                     .output_path = arguments.output_path,
                                     .sequence_path = arguments.view.sequence_path,
                                     .camera_path = arguments.view.camera_path,
-                                    .images = arguments.bundle_images ? BundledImages::kSome : BundledImages::kNone});
+                                    .images = arguments.bundle_images ? BundledImages::kSome : BundledImages::kNone,
+                                    .program_version = ProgramVersion()});
   if (!summary.ok()) return line.Failure(summary.status().message());
   SayNotes(summary->notes);
   SayResult(std::to_string(summary->files.size()) + " files, " + Digits(summary->megabytes, 1) + " MB in " +

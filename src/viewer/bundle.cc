@@ -18,7 +18,6 @@
 #include "pliant/base/files.h"
 #include "pliant/base/staged_folder.h"
 #include "pliant/base/text.h"
-#include "pliant/base/version.h"
 #include "pliant/datasets/run_sequence.h"
 #include "pliant/io/camera_file.h"
 #include "pliant/io/run_summary.h"
@@ -199,8 +198,8 @@ std::string SystemText() {
   return text + std::to_string(std::thread::hardware_concurrency()) + " processors\n";
 }
 
-std::string VersionsText(const RunDescription& run) {
-  return "pliant " + std::string(kVersion) + ", built by " + std::string(BuildText()) + "\nwith " +
+std::string VersionsText(const std::string& program_version, const RunDescription& run) {
+  return "pliant " + program_version + "\nbuilt by " + std::string(BuildText()) + "\nwith " +
          std::string(LibrariesText()) + "\nthe run is of version " + run.program_version + "\n" + SystemText();
 }
 
@@ -319,7 +318,8 @@ Result<BundleSummary> WriteBundle(const BundleRequest& request) {
   if (!staged.ok()) return staged.status();
   const std::vector<fs::path> known = KnownPaths(request.run_path, run->description);
   Bundle bundle(request, *std::move(staged));
-  if (Status status = bundle.Add(kVersions, VersionsText(run->description)); !status.ok()) return status;
+  if (Status status = bundle.Add(kVersions, VersionsText(request.program_version, run->description)); !status.ok())
+    return status;
   if (Status status = bundle.Add(kSummary, CleanedSummary(*summary_text, known)); !status.ok()) return status;
   if (const auto config = ReadFile(request.run_path + "/" + kConfig); config.ok())
     if (Status status = bundle.Add(kConfig, CleanedOptions(*config)); !status.ok()) return status;

@@ -103,6 +103,11 @@ TEST_F(BundleTest, HoldsWhatExplainsTheRunAndNothingPrivate) {
   EXPECT_FALSE(fs::exists(bundle_ + "/.unfinished"));
 }
 
+TEST_F(BundleTest, BeginsItsVersionsAsTheProgramSaysItsOwn) {
+  ASSERT_TRUE(WriteBundle({.run_path = run_, .output_path = bundle_, .program_version = "1.2 (commit 1a2b)"}).ok());
+  EXPECT_THAT(*ReadFile(bundle_ + "/versions.txt"), testing::StartsWith("pliant 1.2 (commit 1a2b)\nbuilt by "));
+}
+
 TEST_F(BundleTest, OfATextWithoutAnEndIsSmall) {
   auto summary = *ReadRunSummary(run_ + "/run.json");
   summary.note = std::string(300000, 'a') + "/b.png";

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pliant/base/status.h"
+#include "pliant/base/version.h"
 
 namespace pliant {
 
@@ -21,6 +22,7 @@ struct BundleRequest {
   std::string sequence_path = {};  // empty: the one that run.json names
   std::string camera_path = {};    // of the sequence; may be empty
   BundledImages images = BundledImages::kNone;
+  std::string program_version = kVersion;  // of the calling program, as it says it
 };
 
 inline constexpr int kMaxBundledImages = 10;
