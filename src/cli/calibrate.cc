@@ -134,14 +134,14 @@ std::vector<std::string> FigurePaths(const std::string& path, bool has_pairs) {
 }
 
 // Nothing where they can be written; else an exit code.
-std::optional<int> CheckFigures(const CommandLine& line, const std::vector<std::string>& paths, ExistingFile existing) {
-  for (const std::string& path : paths) {
-    if (const Status status = CheckEnding(ViewOutput::kFigure, path, "--figure"); !status.ok())
-      return line.UsageError(status.message());
-    if (const Status status = CheckCalibrationOutput(path, existing); !status.ok())
-      return line.Failure(status.message());
+std::optional<int> CheckOutputs(const CommandLine& line, const std::filesystem::path& output_path,
+                                const std::vector<std::string>& figure_paths, ExistingFile existing) {
+  Status status = CheckCalibrationOutput(output_path, existing);
+  for (const std::string& path : figure_paths) {
+    if (status.ok()) status = CheckEnding(ViewOutput::kFigure, path, "--figure");
+    if (status.ok()) status = CheckCalibrationOutput(path, existing);
   }
-  return std::nullopt;
+  return status.ok() ? std::nullopt : std::optional(line.Failure(status));
 }
 
 // The outcome in words and pictures: none, or one a summary.
@@ -204,7 +204,7 @@ int CalibrateCommand(std::span<const std::string> args) {
   if (const Status status = CheckBoardIsSupported(*board); !status.ok()) return line.UsageError(status.message());
   if (const std::string wrong = CheckPairs(request, options.model); !wrong.empty()) return line.UsageError(wrong);
   const std::vector<std::string> figure_paths = FigurePaths(figure_path, request.HasPairs());
-  if (const auto exit = CheckFigures(line, figure_paths, request.existing)) return *exit;
+  if (const auto exit = CheckOutputs(line, request.output_path, figure_paths, request.existing)) return *exit;
 
   const auto with_bars = [&](const auto& calibrate) {
     return WithBars(

@@ -47,8 +47,8 @@ const Manual kEvaluateManual = {
     "--stir scores points at the end of recordings as the STIR challenge does, with its files: the tracked points, and "
     "the labelled ones of the start (--stir_start) and the end (--stir_end). It needs neither a run nor a sequence; "
     "pliant export --format stir writes a run's. --output_path then has stir.json.\n\n"
-    "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
-    "pliant compare sets several runs side by side.",
+    "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame), in "
+    "place of those that are there. pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",
      "pliant evaluate --run run --sequence clip.mp4 --camera stereo.yaml --scale none",
      "pliant evaluate --run run --sequence colon --protocol all --scale global --output_path run/evaluation",

@@ -67,7 +67,7 @@ int ExportCommand(std::span<const std::string> args) {
     JobBars bars(StopOnSignals());
     return ExportRun(request, options, std::ref(bars));
   }();
-  if (!summary.ok()) return line.Failure(summary.status().message());
+  if (!summary.ok()) return line.Failure(summary.status());
   for (const std::string& note : summary->notes) SayNote(note);
   SayResult(std::to_string(summary->frames) + " frames, " + std::to_string(summary->points) + " points, " +
             std::to_string(summary->observations) + " observations in " + request.output_path);

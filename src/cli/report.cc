@@ -36,7 +36,8 @@ const Manual kReportManual = {
     "interrupted or killed, or other systems' results. They are brought into one world by their cameras. Reads the "
     "images, and the truth where there is truth, from --sequence, or from where the first run's run.json says they "
     "are; without them the rest is shown.\n\n"
-    "Leaves the file --output_path. In pictures the undeformed map is black, a point's trail of deformation orange, "
+    "Leaves the file --output_path; a page, a figure or a film that is there is replaced. In pictures the undeformed "
+    "map is black, a point's trail of deformation orange, "
     "the camera blue, and the truth green.",
     {"pliant report --run run -o report.html", "pliant report --run ours --run rigid --sequence colon -o both.html",
      "pliant report --run run --figure 10,40,70 -o figure.svg", "pliant report --run run --video -o film.mp4",
@@ -51,6 +52,7 @@ struct ReportArguments {
   bool video = false;
   bool bundle = false;
   bool bundle_images = false;
+  bool overwrite = false;
 };
 
 // Nothing, or what is wrong with the command line.
@@ -93,8 +95,9 @@ int WriteRunBundle(const CommandLine& line, const ReportArguments& arguments) {
                                     .sequence_path = arguments.view.sequence_path,
                                     .camera_path = arguments.view.camera_path,
                                     .images = arguments.bundle_images ? BundledImages::kSome : BundledImages::kNone,
-                                    .program_version = ProgramVersion()});
-  if (!summary.ok()) return line.Failure(summary.status().message());
+                                    .program_version = ProgramVersion(),
+                                    .replaces_bundle = arguments.overwrite});
+  if (!summary.ok()) return line.Failure(summary.status());
   SayNotes(summary->notes);
   SayResult(std::to_string(summary->files.size()) + " files, " + Digits(summary->megabytes, 1) + " MB in " +
             arguments.output_path + "; look through them before you send them");
@@ -135,6 +138,8 @@ int ReportCommand(std::span<const std::string> args) {
   line.AddFlag("video", &arguments.video, "a film of all frames");
   line.AddFlag("bundle", &arguments.bundle, "a folder to send with a question, without images");
   line.AddFlag("bundle_images", &arguments.bundle_images, "add ten images of the recording to it");
+  line.AddFlag("overwrite", &arguments.overwrite,
+               "replace a bundle that is there; other files are replaced without it");
   if (const auto exit = line.Parse(args)) return *exit;
   ReportOptions report_options;
   FigureOptions figure_options;

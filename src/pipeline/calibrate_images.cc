@@ -267,7 +267,7 @@ Status CheckCalibrationOutput(const std::filesystem::path& path, ExistingFile ex
   if (std::filesystem::is_directory(path, error))
     return {ErrorCode::kUnwritable, Quoted(path.string()) + " is a folder; name the file to write"};
   if (existing == ExistingFile::kKeep && std::filesystem::exists(path, error))
-    return {ErrorCode::kUnwritable, Quoted(path.string()) + " is there already; delete it, or give --overwrite"};
+    return {ErrorCode::kInvalidArgument, Quoted(path.string()) + " is there already; delete it, or give --overwrite"};
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder, error))
     return {ErrorCode::kUnwritable, "there is no folder " + Quoted(folder.string()) + "; make it first"};

@@ -34,10 +34,34 @@ constexpr std::size_t kMaxImageBytes = 180000;
 constexpr int kJpegQuality = 92;
 
 constexpr const char* kReadMe = "README.txt";
+constexpr const char* kWhatItIs = "A bundle of a run of Pliant, to be sent with a question.";  // README.txt begins so
 constexpr const char* kVersions = "versions.txt";
 constexpr const char* kSummary = "run.json";
 constexpr const char* kConfig = "config.yaml";
 constexpr const char* kCamera = "camera.yaml";
+constexpr std::array kBundleNames = {kReadMe, kVersions,    kSummary,         kConfig,
+                                     kCamera, "frames.csv", "trajectory.txt", "images"};
+
+bool HoldsBundle(const fs::path& folder) {
+  const auto read_me = ReadFile((folder / kReadMe).string());
+  return read_me.ok() && read_me->starts_with(kWhatItIs);
+}
+
+// Of a bundle that is replaced only the files of a bundle may be in the way.
+Result<StagedFolder> StageBundle(const BundleRequest& request) {
+  if (!HoldsBundle(request.output_path))
+    return StagedFolder::Create(request.output_path, {kBundleNames.begin(), kBundleNames.end()});
+  if (request.replaces_bundle) return StagedFolder::Create(request.output_path, {});
+  return Status(ErrorCode::kInvalidArgument,
+                Quoted(request.output_path) +
+                    " holds a bundle already; give another --output_path, or --overwrite to replace it");
+}
+
+void DeleteBundle(const fs::path& folder) {
+  std::error_code error;
+  if (!HoldsBundle(folder)) return;
+  for (const char* name : kBundleNames) fs::remove_all(folder / name, error);
+}
 
 bool IsWordCharacter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
@@ -253,14 +277,15 @@ class Bundle {
   }
 
   Result<BundleSummary> Finish() {
-    std::string text =
-        "A bundle of a run of Pliant, to be sent with a question. Look through it before you send it.\n\n"
-        "The folders and names of files are left out of its texts.";
+    std::string text = std::string(kWhatItIs) +
+                       " Look through it before you send it.\n\n"
+                       "The folders and names of files are left out of its texts.";
     text += request_.images == BundledImages::kNone
                 ? " It holds no images.\n"
                 : " It holds images of the recording (images/), which whoever gets it can see.\n";
     for (const std::string& note : summary_.notes) text += "\nnote: " + WithoutImageNames(note);
     if (Status status = Add(kReadMe, text + (summary_.notes.empty() ? "" : "\n")); !status.ok()) return status;
+    DeleteBundle(request_.output_path);
     if (Status status = staged_.Commit(); !status.ok()) return status;
     return summary_;
   }
@@ -313,8 +338,7 @@ Result<BundleSummary> WriteBundle(const BundleRequest& request) {
   if (!summary_text.ok()) return summary_text.status();
   const auto run = ReadRunSummary(request.run_path + "/" + kSummary);
   if (!run.ok()) return run.status();
-  auto staged = StagedFolder::Create(
-      request.output_path, {kReadMe, kVersions, kSummary, kConfig, kCamera, "frames.csv", "trajectory.txt", "images"});
+  auto staged = StageBundle(request);
   if (!staged.ok()) return staged.status();
   const std::vector<fs::path> known = KnownPaths(request.run_path, run->description);
   Bundle bundle(request, *std::move(staged));

@@ -78,6 +78,10 @@ TEST(Program, CalibrateRefusesWhatIsNoBoardAndImagesWithoutOne) {
   EXPECT_EQ(nothing.exit, 1);
   EXPECT_THAT(nothing.err, HasSubstr("there is nothing at 'none'"));
   EXPECT_FALSE(std::filesystem::exists(Temporary("camera.yaml")));
+  std::ofstream(Temporary("camera.yaml")) << "before";
+  const Outcome kept = Pliant("calibrate --image_path none --board chessboard:9x6:2" + output);
+  EXPECT_EQ(kept.exit, 2);
+  EXPECT_THAT(kept.err, HasSubstr("is there already; delete it, or give --overwrite"));
 }
 
 TEST(Program, TheShortManualHasTheMainOptionsAndSaysHowToSeeAll) {

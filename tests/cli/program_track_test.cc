@@ -162,6 +162,30 @@ TEST(Program, WhatIsThereIsReplacedOnRequestOnly) {
   }
   EXPECT_EQ(ReadText(run + "/run.json"), before);
   EXPECT_EQ(Pliant(import + " --overwrite").exit, 0);
+
+  const std::string bundle = Temporary("bundle").string();
+  const std::string report = "report --quiet '" + run + "' --bundle -o '" + bundle + "'";
+  ASSERT_EQ(Pliant(report).exit, 0);
+  const std::string version = Pliant("--version").out;
+  EXPECT_THAT(ReadText(bundle + "/versions.txt"), StartsWith(version.substr(0, version.find('\n') + 1)));
+  const Outcome refused = Pliant(report);
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_THAT(refused.err, HasSubstr("'" + bundle + "' holds a bundle already"));
+  EXPECT_EQ(Pliant(report + " --overwrite").exit, 0);
+
+  const std::string exported = "export --quiet '" + run + "' --format ply -o '" + Temporary("ply").string() + "'";
+  ASSERT_EQ(Pliant(exported).exit, 0);
+  EXPECT_EQ(Pliant(exported).exit, 2);
+}
+
+TEST(Program, WhatIsMadeOfARunInSecondsIsReplaced) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "-o '" + sequence + "'").exit, 0);
+  const std::string run = ForeignResult("run", 2);
+  for (const std::string& command :
+       {"report '" + run + "' --sequence '" + sequence + "' -o '" + Temporary("report.html").string() + "'",
+        "evaluate '" + run + "' --sequence '" + sequence + "' -o '" + Temporary("evaluation").string() + "'"})
+    for (int time = 0; time < 2; ++time) EXPECT_EQ(Pliant(command).exit, 0) << command;
 }
 
 TEST(Program, ARefinedOrJoinedRunNeedsAFolderOfItsOwn) {

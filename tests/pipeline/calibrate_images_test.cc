@@ -128,6 +128,7 @@ TEST_F(CalibrateImagesTest, KeepsAFileThatIsThere) {
   const auto summary = Calibrate(request);
   ASSERT_FALSE(summary.ok());
   EXPECT_THAT(summary.status().message(), HasSubstr("is there already"));
+  EXPECT_EQ(summary.status().code(), ErrorCode::kInvalidArgument);
   EXPECT_EQ(ReadFile(request.output_path).value(), "before");
   EXPECT_THAT(CheckCalibrationOutput(folder_ / "none/camera.yaml", ExistingFile::kKeep).message(),
               HasSubstr("there is no folder"));

@@ -108,6 +108,24 @@ TEST_F(BundleTest, BeginsItsVersionsAsTheProgramSaysItsOwn) {
   EXPECT_THAT(*ReadFile(bundle_ + "/versions.txt"), testing::StartsWith("pliant 1.2 (commit 1a2b)\nbuilt by "));
 }
 
+TEST_F(BundleTest, ReplacesABundleOnRequestAndNothingElse) {
+  BundleRequest request{.run_path = run_, .output_path = bundle_, .images = BundledImages::kSome};
+  ASSERT_TRUE(WriteBundle(request).ok());
+  std::ofstream(bundle_ + "/notes.txt") << "mine";
+  request.images = BundledImages::kNone;
+  const Status kept = WriteBundle(request).status();
+  EXPECT_EQ(kept.code(), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(kept.message(),
+            "'" + bundle_ + "' holds a bundle already; give another --output_path, or --overwrite to replace it");
+  request.replaces_bundle = true;
+  ASSERT_TRUE(WriteBundle(request).ok());
+  EXPECT_FALSE(fs::exists(bundle_ + "/images")) << "of the former one";
+  EXPECT_EQ(*ReadFile(bundle_ + "/notes.txt"), "mine");
+  request.output_path = run_;
+  EXPECT_EQ(WriteBundle(request).status().code(), ErrorCode::kInvalidArgument) << "a run is no bundle";
+  EXPECT_THAT(*ReadFile(run_ + "/run.json"), HasSubstr("smith"));
+}
+
 TEST_F(BundleTest, OfATextWithoutAnEndIsSmall) {
   auto summary = *ReadRunSummary(run_ + "/run.json");
   summary.note = std::string(300000, 'a') + "/b.png";

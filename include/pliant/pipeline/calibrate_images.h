@@ -36,8 +36,8 @@ struct CalibrateOptions {
 
 enum class ExistingFile { kKeep, kOverwrite };
 
-// Minutes of search are not to end with a file that cannot be written. Fails with kUnwritable: a folder, one that is
-// not there or not writable, and a file that is to be kept.
+// Minutes of search are not to end with a file that cannot be written. Fails with kInvalidArgument: a file that is to
+// be kept; with kUnwritable: a folder, and one that is not there or not writable.
 Status CheckCalibrationOutput(const std::filesystem::path& path, ExistingFile existing);
 
 struct CalibrateRequest {

@@ -23,6 +23,7 @@ struct BundleRequest {
   std::string camera_path = {};    // of the sequence; may be empty
   BundledImages images = BundledImages::kNone;
   std::string program_version = kVersion;  // of the calling program, as it says it
+  bool replaces_bundle = false;            // one that is in output_path; what else is there stays
 };
 
 inline constexpr int kMaxBundledImages = 10;
@@ -35,7 +36,8 @@ struct BundleSummary {
 };
 
 // All files appear together, or none. Fails with kNotFound where `run_path` holds no run.json, with kInvalidArgument
-// where the folder holds a bundle already, kUnreadable and kUnwritable. Images that are missing are a note.
+// where the folder holds a bundle that is to stay, or other files of these names, kUnreadable and kUnwritable. Images
+// that are missing are a note.
 Result<BundleSummary> WriteBundle(const BundleRequest& request);
 
 // `text` without the folders and names of files: what stands in single quotes and has a /, and a word that begins with
