@@ -55,7 +55,7 @@ Result<DataSet> WithAssumedCamera(const SequenceRequest& request, const fs::path
   if (!camera.ok()) return camera.status();
   DataSet data_set{.calibration = {*camera, name}, .images = std::move(images), .mask_path = request.mask_path};
   if (data_set.images->fps()) data_set.calibration.fps = *data_set.images->fps();
-  data_set.warnings.push_back("the camera is not calibrated (" + name.string() +
+  data_set.warnings.push_back(std::string(kAssumedCameraWarning) + " (" + name.string() +
                               " degrees are assumed): if the assumed field of view is wrong, so are depths and motion");
   return data_set;
 }

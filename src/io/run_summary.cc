@@ -57,7 +57,8 @@ Json RefinementJson(const RunDescription& description) {
   for (const RefinedModel model : description.refinement->models) models.push_back(EnumName(model));
   return {{"models", models},
           {"depth_sigma", description.refinement->depth_sigma},
-          {"estimated_camera", description.refinement->has_estimated_camera}};
+          {"estimated_camera", description.refinement->has_estimated_camera},
+          {"focal_length_kept", description.refinement->focal_length_kept}};
 }
 
 RunRefinement ReadRefinement(const Json& json) {
@@ -70,6 +71,7 @@ RunRefinement ReadRefinement(const Json& json) {
   }
   refinement.depth_sigma = json.at("depth_sigma").get<double>();
   refinement.has_estimated_camera = json.at("estimated_camera").get<bool>();
+  refinement.focal_length_kept = json.value("focal_length_kept", "");
   return refinement;
 }
 

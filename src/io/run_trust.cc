@@ -205,9 +205,20 @@ std::string OfAssumedCamera(const RunDescription& run) {
          " degrees were assumed. If that is wrong, so are depths and motion.";
 }
 
+std::string WhyFocalLengthWasKept(const RunSummary& summary) {
+  return summary.description.refinement ? summary.description.refinement->focal_length_kept : "";
+}
+
+std::string OfKeptFocalLength(const RunSummary& summary) {
+  const std::string why = WhyFocalLengthWasKept(summary);
+  return why.empty() ? "" : "The refinement was to estimate the focal length and kept it: " + why + ".";
+}
+
+// The topic calibration says what an assumed camera means.
 std::string OfRecording(const RunDescription& run) {
   std::vector<std::string> sentences;
-  for (const std::string& warning : run.warnings) sentences.push_back(warning + ".");
+  for (const std::string& warning : run.warnings)
+    if (!warning.starts_with(kAssumedCameraWarning)) sentences.push_back(warning + ".");
   return Joined(sentences);
 }
 
@@ -262,7 +273,7 @@ std::string AdviceOnDepth(const RunSummary& summary) {
   return (parallax_deg < kEnoughParallaxDeg
               ? std::string("Depth needs more parallax: move the camera sideways, and further by the distance of the "
                             "tissue.")
-              : Capitalized(AdviceOnUncertainDepth(parallax_deg)) + ".") +
+              : Capitalized(AdviceOnUncertainDepth(parallax_deg, OriginOf(summary.description.camera))) + ".") +
          " Compare a run begun at another frame: pliant evaluate tells how far they agree.";
 }
 
@@ -280,9 +291,10 @@ std::string Advice(const RunSummary& summary) {
   if (!HasEstimatedCamera(summary) && count([](const FirstMapEvidence& e) { return e.focal_length_factor != 1.0; }))
     advice.emplace_back("Calibrate the camera, or check that the calibration is of this lens, zoom and image size.");
   else if (IsAssumedCamera(summary.description.camera))
-    advice.emplace_back(
-        "Calibrate the camera (pliant calibrate), or let pliant refine estimate its focal length where the scene is "
-        "rigid.");
+    advice.push_back("Calibrate the camera (pliant calibrate)" +
+                     std::string(summary.frames_tracked == 0 || !WhyFocalLengthWasKept(summary).empty()
+                                     ? "."
+                                     : ", or let pliant refine estimate its focal length where the scene is rigid."));
   if (FramesIn(summary, TrackingState::kLost) > 0)
     advice.emplace_back("Where the map was lost, look for tools, smoke and fast motion; a mask over tools helps.");
   if (summary.median_coverage > 0.0 && summary.median_coverage < kMinCoverage)
@@ -330,9 +342,10 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   add("depth", IsRefined(summary) ? OfRefinedDepth(summary) : Joined({OfMaps(summary, OfDepth), OfRigidity(summary)}));
   add("depth_prior", OfPrior(summary));
   add("camera", IsRefined(summary) ? OfModels(summary) : OfTrackedCamera(summary));
-  add("calibration", HasEstimatedCamera(summary)
-                         ? "The camera's focal length was estimated together with the scene."
-                         : Joined({OfAssumedCamera(summary.description), OfMaps(summary, OfCalibration)}));
+  add("calibration",
+      HasEstimatedCamera(summary)
+          ? "The camera's focal length was estimated together with the scene."
+          : Joined({OfAssumedCamera(summary.description), OfKeptFocalLength(summary), OfMaps(summary, OfCalibration)}));
   add("recording", OfRecording(summary.description));
   add("images", OfImages(summary.description));
   if (summary.median_reprojection_error_px > 0.0) add("tracks", OfTracks(summary));

@@ -170,6 +170,7 @@ bool HasNewCamera(const RefineSummary& summary) {
 RunRefinement RefinementOf(const RefineSummary& summary, const std::map<int, RefinedRecording>& refined) {
   RunRefinement refinement;
   refinement.has_estimated_camera = HasNewCamera(summary);
+  if (summary.focal_length) refinement.focal_length_kept = summary.focal_length->failure;
   std::vector<double> shares;  // of the distances
   for (const SubmapRefinement& submap : summary.submaps) {
     refinement.models.push_back(ModelOf(submap));

@@ -8,6 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pliant/camera/assumed_camera.h"
+#include "support/test_folder.h"
+
 namespace pliant {
 namespace {
 
@@ -78,6 +81,30 @@ TEST(RunTrust, OfARefinedRunSaysNothingOfTheFirstMap) {
   summary.description.refinement.reset();  // an earlier version's
   EXPECT_THAT(Trust(summary), Not(Contains(Key("depth"))));
   EXPECT_THAT(Trust(summary), Not(Contains(Key("camera"))));
+}
+
+TEST(RunTrust, OfAnAssumedCameraAdvisesNoRefinementThatWasTried) {
+  const auto refine = HasSubstr("pliant refine");
+  const std::string warning = std::string(kAssumedCameraWarning) + " (fov:70 degrees are assumed)";
+  RunSummary summary = Summary(kKnown);
+  summary.description.camera = "fov:70";
+  summary.description.warnings = {warning, "the images are repeated"};
+  const auto tracked = Trust(summary);
+  EXPECT_THAT(tracked.at("calibration"), HasSubstr("fov:70 degrees were assumed"));
+  EXPECT_EQ(tracked.at("recording"), "the images are repeated.") << "what calibration says is not said twice";
+  EXPECT_THAT(tracked.at("advice"), refine);
+
+  summary.description.refined_from = "/runs/run";
+  summary.description.refinement = RunRefinement{{RefinedModel::kRigid}, 0.008, false, "nothing determines it"};
+  const auto refined = Trust(summary);
+  EXPECT_THAT(refined.at("calibration"),
+              HasSubstr("The refinement was to estimate the focal length and kept it: nothing determines it."));
+  EXPECT_THAT(refined.at("advice"), testing::AllOf(HasSubstr("Calibrate the camera"), Not(refine)));
+
+  const TestFolder folder;
+  ASSERT_TRUE(WriteRunSummary(folder.Path("run.json"), summary).ok());
+  EXPECT_EQ(ReadRunSummary(folder.Path("run.json"))->description.refinement->focal_length_kept,
+            "nothing determines it");
 }
 
 TEST(RunTrust, SaysNoErrorThatIsZero) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
@@ -21,6 +22,9 @@ enum class CameraOrigin {
 std::string AssumedCameraName(double horizontal_fov_deg);
 bool IsAssumedCamera(const std::string& camera_path);
 CameraOrigin OriginOf(const std::string& camera_path);
+
+// How the warning of a data set begins whose camera is assumed.
+inline constexpr std::string_view kAssumedCameraWarning = "the camera is not calibrated";
 
 // SIMPLE_PINHOLE with the optical axis in the middle of the image. Fails with kInvalidArgument unless the name says a
 // field of view of 10 to 150 degrees.

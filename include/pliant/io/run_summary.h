@@ -60,6 +60,7 @@ struct RunRefinement {
   std::vector<RefinedModel> models;  // of its submaps, in order
   double depth_sigma = 0;            // median of a point's standard deviation by its distance; 0: unknown
   bool has_estimated_camera = false;
+  std::string focal_length_kept = {};  // why the focal length was not estimated where it was to be; empty: it was
 };
 
 // What is known when a run begins.
