@@ -27,6 +27,20 @@ bool ParseSize(std::string_view text, int* columns, int* rows) {
 
 bool ParseLength(std::string_view text, double* length_mm) { return ParseFinite(text, length_mm) && *length_mm > 0; }
 
+std::string KindName(BoardKind kind) {
+  switch (kind) {
+    case BoardKind::kCharuco:
+      return "ChArUco board";
+    case BoardKind::kCircles:
+      return "grid";
+    case BoardKind::kAsymmetricCircles:
+      return "asymmetric grid";
+    case BoardKind::kChessboard:
+      break;
+  }
+  return "chessboard";
+}
+
 std::string PointName(BoardKind kind) {
   return kind == BoardKind::kChessboard || kind == BoardKind::kCharuco ? "inner corners" : "circles";
 }
@@ -46,8 +60,8 @@ std::vector<Eigen::Vector3d> CalibrationBoard::Points() const {
 }
 
 std::string CalibrationBoard::Title() const {
-  return std::string(EnumName(kind)) + " of " + std::to_string(columns) + "x" + std::to_string(rows) + " " +
-         PointName(kind) + ", " + FormatDouble(spacing_mm) + " mm apart";
+  return KindName(kind) + " of " + std::to_string(columns) + "x" + std::to_string(rows) + " " + PointName(kind) + " (" +
+         FormatDouble(spacing_mm) + " mm apart)";
 }
 
 Result<CalibrationBoard> ParseBoard(std::string_view text) {

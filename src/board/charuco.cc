@@ -146,8 +146,10 @@ Status CheckCharucoIsSupported(const CalibrationBoard& board) {
     if (name == board.dictionary) return Status::Ok();
   std::vector<std::string> names;
   for (const auto& [name, dictionary] : kDictionaries) names.emplace_back(name);
-  return {ErrorCode::kInvalidArgument, "there is no dictionary of markers " + Quoted(board.dictionary) +
-                                           "; did you mean " + NearestName(board.dictionary, names) + "?"};
+  const std::string similar = SimilarName(board.dictionary, names);
+  return {ErrorCode::kInvalidArgument,
+          "there is no dictionary of markers " + Quoted(board.dictionary) +
+              (similar.empty() ? "; give one of " + CommaSeparated(names) : "; did you mean " + similar + "?")};
 }
 
 std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard& board) {

@@ -335,10 +335,9 @@ double RmsOf(const std::vector<FittedView>& views) {
 }
 
 Status TooFew(std::size_t views) {
-  const std::string seen =
-      views <= 1 ? "one image, or in images that are alike" : std::to_string(views) + " images that differ";
-  return {ErrorCode::kInsufficient, "the board is seen in " + seen + ", and " +
-                                        std::to_string(kFewestCalibrationViews) +
+  const std::string seen = views <= 1 ? "the board is seen in one image, or in images that are alike"
+                                      : "the board is seen in " + std::to_string(views) + " images that differ";
+  return {ErrorCode::kInsufficient, seen + ", and " + std::to_string(kFewestCalibrationViews) +
                                         " are the least; add images of the board from other sides"};
 }
 

@@ -121,9 +121,12 @@ std::string OtherMarkers(const CalibrationBoard& board) {
 Status NotSeen(const CalibrateRequest& request, const std::string& source, const std::vector<cv::Mat>& images,
                std::size_t seen_in, const SecondLook& how) {
   const CalibrationBoard& board = request.board;
-  const std::string sentence = "the " + board.Title() + " is in " +
-                               (seen_in == 0 ? "none" : "only " + std::to_string(seen_in)) + " of the " +
-                               std::to_string(images.size()) + " images of " + source + " that were searched; ";
+  const std::string where =
+      images.size() == 1
+          ? " is not in the only image of " + source
+          : (seen_in == 0 ? " is in none of the " : " is in only " + std::to_string(seen_in) + " of the ") +
+                std::to_string(images.size()) + " images of " + source + " that were searched";
+  const std::string sentence = "the " + board.Title() + where + "; ";
   const ChessboardSize own{std::max(board.columns, board.rows), std::min(board.columns, board.rows)};
   if (board.kind == BoardKind::kChessboard) {
     const auto seen = MostSeenSize(images, how);
@@ -289,7 +292,8 @@ Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const 
   if (Status status = CheckCalibrationOutput(request.output_path, request.existing); !status.ok()) return status;
   const auto recording = SearchBoards(request, options, progress);
   if (!recording.ok()) return recording.status();
-  auto summary = CalibrateOne(request, options, *recording, 0, Lenses::kAll, request.image_path.string(), progress);
+  auto summary =
+      CalibrateOne(request, options, *recording, 0, Lenses::kAll, Quoted(request.image_path.string()), progress);
   if (!summary.ok() || request.output_path.empty()) return summary;
   CameraFile file{summary->calibration.camera};
   file.fps = recording->fps;
@@ -308,12 +312,12 @@ Result<CalibratePairsSummary> CalibratePairs(const CalibrateRequest& request, co
                       " and the right ones " + SizeText(recording->sizes[1].width, recording->sizes[1].height) +
                       "; give both as they were recorded, at one size");
   const bool is_apart = !request.right_path.empty();
-  const std::string source = request.image_path.string();
+  const std::string source = Quoted(request.image_path.string());
   auto left = CalibrateOne(request, options, *recording, 0, Lenses::kPerspective,
                            is_apart ? source : source + " (left)", progress);
   if (!left.ok()) return left.status();
   auto right = CalibrateOne(request, options, *recording, 1, Lenses::kPerspective,
-                            is_apart ? request.right_path.string() : source + " (right)", progress);
+                            is_apart ? Quoted(request.right_path.string()) : source + " (right)", progress);
   if (!right.ok()) return right.status();
   const BoardPairs pairs = ChoosePairs(request, options, *recording);
   auto stereo = CalibrateStereo(request.board, left->calibration.camera, right->calibration.camera, pairs.left,

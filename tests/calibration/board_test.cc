@@ -25,6 +25,15 @@ TEST(Board, ReadsEveryKind) {
   EXPECT_TRUE(ParseBoard("acircles:4x11:5").ok());
 }
 
+TEST(Board, IsNamedByItsKindItsPointsAndTheirSpacing) {
+  for (const auto& [text, title] :
+       {std::pair("chessboard:9x6:2.5", "chessboard of 9x6 inner corners (2.5 mm apart)"),
+        std::pair("charuco:8x5:10:7:5X5_100", "ChArUco board of 7x4 inner corners (10 mm apart)"),
+        std::pair("circles:7x6:5", "grid of 7x6 circles (5 mm apart)"),
+        std::pair("acircles:4x11:5", "asymmetric grid of 4x11 circles (5 mm apart)")})
+    EXPECT_EQ(ParseBoard(text)->Title(), title);
+}
+
 TEST(Board, NumbersPointsRowByRow) {
   const auto board = ParseBoard("chessboard:4x3:2");
   EXPECT_EQ(board->Points()[0], Eigen::Vector3d(0, 0, 0));

@@ -136,7 +136,8 @@ TEST_F(CalibrateImagesTest, KeepsAFileThatIsThere) {
 
 TEST_F(CalibrateImagesTest, RefusesImagesWithoutABoard) {
   const CalibrateRequest request = Request(0, {cv::Mat(360, 480, CV_8UC1, cv::Scalar(0))});
-  ExpectFailure(request, ErrorCode::kInsufficient, "is in none of the 1 images");
+  ExpectFailure(request, ErrorCode::kInsufficient,
+                "the chessboard of 7x5 inner corners (2 mm apart) is not in the only image of '");
 }
 
 TEST_F(CalibrateImagesTest, RefusesOneImage) {

@@ -179,7 +179,8 @@ TEST(BoardScene, SaysWhatIsWrong) {
   options.scene.board = "charuco:8x5:10:7:5X5_101";
   EXPECT_THAT(message(options), testing::AnyOf(HasSubstr("did you mean 5X5_100"), HasSubstr("cannot find ChArUco")));
   options.scene.board = "chessboard:7x5:0.1";
-  EXPECT_THAT(message(options), HasSubstr("does not see all of the chessboard of 7x5 inner corners, 0.1 mm apart"));
+  EXPECT_THAT(message(options),
+              HasSubstr("does not see all of the chessboard of 7x5 inner corners (0.1 mm apart) from anywhere"));
   options = Photographs(2);
   options.trajectory.kind = TrajectoryKind::kInsert;
   EXPECT_THAT(message(options), HasSubstr("give Trajectory.kind board"));

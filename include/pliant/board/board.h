@@ -41,7 +41,7 @@ struct CalibrationBoard {
   int NumPoints() const { return columns * rows; }
   // The points by their number: row by row.
   std::vector<Eigen::Vector3d> Points() const;
-  // "chessboard of 9x6 inner corners, 2 mm apart".
+  // "chessboard of 9x6 inner corners (2 mm apart)".
   std::string Title() const;
 };
 
