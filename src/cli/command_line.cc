@@ -106,8 +106,8 @@ int RunVerb(std::string_view command, std::span<const Verb> verbs, std::span<con
   for (const Verb& verb : verbs)
     usage += (usage.empty() ? "usage: " : "       ") + ("pliant " + std::string(command)) + " " +
              std::string(verb.name) + " " + std::string(verb.arguments) + "\n";
-  usage += "\nWith --help each of them prints its manual.\n";
-  const bool asked = name == "--help" || name == "-h" || name == "help";
+  usage += "\nWith --help each of them prints its manual, with --help-all that with all options.\n";
+  const bool asked = name == "--help" || name == "--help-all" || name == "-h" || name == "help";
   TheLogging() = {NameOf("pliant", command)};
   if (!asked) SayError(name.empty() ? "give one of its verbs" : "it has no verb " + Quoted(name));
   (asked ? std::cout : std::cerr) << usage;

@@ -60,8 +60,8 @@ std::string Usage() {
     text += "  " + std::string(command.name) + std::string(12 - command.name.size(), ' ') +
             std::string(command.summary) + "\n";
   return text +
-         "\npliant COMMAND --help is the command's manual; pliant --version prints the versions of it and of its "
-         "libraries.\n";
+         "\npliant COMMAND --help is the command's manual, and --help-all has all of its options; pliant --version "
+         "prints the versions of it and of its libraries.\n";
 }
 
 int Run(std::span<const std::string> args) {
@@ -75,7 +75,7 @@ int Run(std::span<const std::string> args) {
     command.emplace_back("--help");
     return Run(command);
   }
-  if (name == "--help" || name == "-h" || name == "help") {
+  if (name == "--help" || name == "--help-all" || name == "-h" || name == "help") {
     std::cout << Usage();
     return kExitOk;
   }

@@ -286,6 +286,7 @@ _pliant() {
     mapfile -t COMPREPLY < <(compgen -W "$(_pliant_words '')" -- "$current")
     return
   fi
+  if [[ $command == help ]] && ((COMP_CWORD > 3)); then return; fi
   # Of a command with verbs, the verb belongs to its name.
   if [[ $(_pliant_words "$command") != -* ]]; then
     if ((COMP_CWORD > 2)); then command+=" ${COMP_WORDS[2]}"; fi
@@ -332,7 +333,7 @@ def bash_completion(commands):
     values = {}
     for command in commands:
         if command.verbs:
-            words[command.words[0]] = [verb.words[-1] for verb in command.verbs]
+            words[command.words[0]] = words["help " + command.words[0]] = [verb.words[-1] for verb in command.verbs]
     for command in with_verbs(commands):
         key = " ".join(command.words)
         words[key] = [name for option in command.options() for name in names(option)]
@@ -393,7 +394,11 @@ def zsh_completion(commands):
     text += "".join(f"      {zsh_description(command.words[0], command.summary)}\n" for command in commands)
     text += f"      {zsh_description('help', HELP)}\n"
     text += "    )\n    _describe command known\n    ;;\n  argument)\n    case $words[1] in\n"
-    text += f"      help)\n        _arguments '1:command:({' '.join(command.words[0] for command in commands)})'\n        ;;\n"
+    text += (f"      help)\n        _arguments '1:command:({' '.join(command.words[0] for command in commands)})' "
+             "'2:verb:->verb'\n        if [[ $state == verb ]]; then\n          case $words[2] in\n")
+    text += "".join(f"            {command.words[0]}) compadd {' '.join(verb.words[-1] for verb in command.verbs)} ;;\n"
+                    for command in commands if command.verbs)
+    text += "          esac\n        fi\n        ;;\n"
     for command in commands:
         if not command.verbs:
             text += zsh_command(command, "      ")
@@ -425,7 +430,8 @@ def fish_completion(commands):
     text = "# fish completion of pliant, made by make_manual.py from the program's own manual.\n\ncomplete -c pliant -f\n"
     every = " ".join(command.words[0] for command in commands)
     text += (f"complete -c pliant -n __fish_use_subcommand -a help -d {fish_quote(HELP)}\n"
-             f"complete -c pliant -n '__fish_seen_subcommand_from help' -a '{every}'\n")
+             f"complete -c pliant -n '__fish_seen_subcommand_from help; and not __fish_seen_subcommand_from {every}' "
+             f"-a '{every}'\n")
     for command in commands:
         text += (f"complete -c pliant -n __fish_use_subcommand -a {command.words[0]} "
                  f"-d {fish_quote(command.summary)}\n")

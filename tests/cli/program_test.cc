@@ -47,7 +47,11 @@ TEST(Program, WithoutACommandItShowsTheUsageAndExitsWithTwo) {
 }
 
 TEST(Program, HelpAndVersionSucceed) {
-  EXPECT_EQ(Pliant("--help").exit, 0);
+  const Outcome help = Pliant("--help");
+  EXPECT_EQ(help.exit, 0);
+  EXPECT_THAT(help.out, HasSubstr("--help-all"));
+  EXPECT_EQ(Pliant("--help-all").out, help.out);
+  EXPECT_EQ(Pliant("dataset --help-all").out, Pliant("dataset --help").out);
   const Outcome version = Pliant("--version");
   EXPECT_EQ(version.exit, 0);
   EXPECT_THAT(version.out, testing::MatchesRegex("pliant [0-9]+\\.[0-9]+\\.[0-9]+( \\(commit "

@@ -112,6 +112,9 @@ class Completion(unittest.TestCase):
         self.assertIn("--image_path", completed("pliant", "dataset", "convert", "--im"))
         self.assertIn("help", completed("pliant", "he"))
         self.assertEqual(["dataset", "demo"], sorted(completed("pliant", "help", "d")))
+        self.assertEqual(["info"], completed("pliant", "help", "dataset", "i"))
+        self.assertEqual([], completed("pliant", "help", "track", ""))
+        self.assertEqual([], completed("pliant", "help", "dataset", "info", ""))
 
     def test_arguments_then_groups_of_options_then_options(self):
         self.assertEqual(["--image_path"], completed("pliant", "track", "--image"))
