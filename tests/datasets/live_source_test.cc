@@ -3,10 +3,12 @@
 
 #include "pliant/datasets/live_source.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -60,7 +62,8 @@ class LiveSourceTest : public SequenceFiles {
 };
 
 TEST(IsLiveSource, TellsAddressesFromFiles) {
-  for (const char* live : {"-", "device:0", "rtsp://10.0.0.2/stream", "http://host:8080/video", "HTTP://host/a", "udp://@:1234"})
+  for (const char* live :
+       {"-", "device:0", "rtsp://10.0.0.2/stream", "http://host:8080/video", "HTTP://host/a", "udp://@:1234"})
     EXPECT_TRUE(IsLiveSource(live)) << live;
   for (const char* file : {"", "clip.mp4", "device", "/dev/video0", "http", "folder/-", "./-"})
     EXPECT_FALSE(IsLiveSource(file)) << file;
@@ -188,13 +191,33 @@ TEST_F(LiveSourceTest, ASourceThatStallsFailsAndOneThatIsStoppedEnds) {
   EXPECT_FALSE((*source)->Read(3)->has_value());
 }
 
+std::string Jpeg(const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", image, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST_F(LiveSourceTest, CountsWhatCannotBeDecoded) {
+  for (int idx = 0; idx < 8; ++idx) {
+    std::string image = Jpeg(Gray(idx));
+    if (idx == 4) std::fill(image.begin() + 4, image.end() - 2, '\0');
+    pipe_.Write(image);
+  }
+  pipe_.Close();
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  int images = 0;
+  while ((*source)->Read(images)->has_value()) ++images;
+  EXPECT_EQ((*source)->counts().received, images);
+  EXPECT_LT(images, 8);
+  EXPECT_GE((*source)->counts().damaged, 1);
+}
+
 TEST_F(LiveSourceTest, SaysThatPhotographsChangeTheirSize) {
   const auto send = [&](int idx, cv::Size size) {
     cv::Mat image;
     cv::resize(Gray(idx), image, size);
-    std::vector<unsigned char> bytes;
-    cv::imencode(".jpg", image, bytes);
-    pipe_.Write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    pipe_.Write(Jpeg(image));
   };
   for (int idx = 0; idx < 4; ++idx) send(idx, {kWidth, kHeight});
   for (int idx = 4; idx < 8; ++idx) send(idx, {kWidth / 2, kHeight / 2});

@@ -134,7 +134,8 @@ class TrackObserver {
 
 // Runs the tracker over the sequence. Fails when there is nothing to run on: options that contradict each other
 // (CheckTrackOptions), an input that cannot be opened, an output that cannot be made, a checkpoint that is damaged or
-// of another run; with kInterrupted where `stop` becomes true before the first frame. Once frames are read the answer is a summary, whose status and note say how the run ended:
+// of another run; with kInterrupted where `stop` becomes true before the first frame. Once frames are read the answer
+// is a summary, whose status and note say how the run ended:
 //   completed    at the sequence's end            lost    too few points (the note says in which frame)
 //   interrupted  `stop` became true               failed  an image could not be read, a row not be written, or the
 //                                                         sequence ended without a first map
