@@ -208,7 +208,7 @@ TEST(RunWriter, ReportsAFullDiskAndKeepsWhatItWrote) {
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{2000, before.rlim_max};
+  const rlimit small{4000, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
   Status status;
   int frames = 0;
