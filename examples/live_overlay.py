@@ -12,7 +12,6 @@ Pictures go into FOLDER, or without one into a window, which Esc closes. Needs p
 
 import argparse
 import itertools
-import os
 import pathlib
 import queue
 import threading
@@ -55,8 +54,8 @@ def images_of(source, most):
     capture = cv2.VideoCapture(int(source) if source.isdigit() else source)
     if not capture.isOpened():
         raise SystemExit(f"cannot open {source}")
-    is_file = os.path.exists(source)
-    return is_file, itertools.islice((all_images if is_file else newest_images)(capture), most)
+    is_live = source.isdigit() or "://" in source or source.startswith("/dev/")
+    return is_live, itertools.islice((newest_images if is_live else all_images)(capture), most)
 
 
 def draw(image, report, trails):
@@ -94,10 +93,10 @@ def main():
     if arguments.output_path:
         arguments.output_path.mkdir(parents=True, exist_ok=True)
 
-    is_file, images = images_of(arguments.source, arguments.frames)
+    is_live, images = images_of(arguments.source, arguments.frames)
     examples = list(itertools.islice(images, EXAMPLES))
-    # A map is taken over so many frames after it was asked for, so that no frame waits for it.
-    options = {} if is_file else {"Tracking.handover_frames": 30}
+    # A map is taken over some frames after it was asked for, when it is there: no frame waits for it.
+    options = {"Tracking.handover_frames": 30, "Tracking.handover_waits": "off"} if is_live else {}
     tracker = pliant.Tracker(pliant.read_camera(arguments.camera), options, examples=examples)
     waiting, trails = {}, {}  # images whose report waits for a first map
 

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -27,13 +26,12 @@ inline const std::string kDefaultRun = PLIANT_TEST_RUN;  // of all of it, with d
 
 // The pipeline with nothing on the terminal; a run that could not begin is a test failure.
 inline RunSummary TrackSequenceAt(const std::string& sequence, const std::string& run, const TrackOptions& options,
-                                  int end = -1, const std::atomic<bool>* stop = nullptr) {
+                                  int end = -1) {
   RunRequest request;
   request.input.image_path = sequence;
   request.input.end = end;
   request.output_path = run;
   request.command_line = {"pliant", "track"};
-  request.stop = stop;
   auto summary = RunTrack(request, options, {});
   EXPECT_TRUE(summary.ok()) << summary.status().message();
   return summary.ok() ? *summary : RunSummary{};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // What goes wrong in the middle of a run: what was computed is on disk and readable, and one sentence says what it was.
+#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <thread>
@@ -191,12 +192,23 @@ TEST(Robustness, AFrozenSequenceCarriesNoMapAndSaysFrozen) {
 }
 
 TEST(Robustness, StoppedOnRequestTheRunSaysInterrupted) {
+  class StopAtStart final : public TrackObserver {
+   public:
+    void OnStart(int /*frames*/) override { stop = true; }
+    void OnFrame(const FrameReport& /*report*/) override {}
+    std::atomic<bool> stop = false;
+  } observer;
   const TestFolder folder;
-  const std::atomic<bool> stop = true;
-  const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), DepthStart(), -1, &stop);
-  EXPECT_EQ(summary.status, RunStatus::kInterrupted);
-  EXPECT_EQ(EndOf(summary, folder.Path("run")).code(), ErrorCode::kInterrupted);
-  EXPECT_EQ(summary.frames_tracked, 1);
+  RunRequest request;
+  request.input.image_path = kSequence;
+  request.output_path = folder.Path("run");
+  request.stop = &observer.stop;
+  TrackObserver* const observers[] = {&observer};
+  const auto summary = RunTrack(request, DepthStart(), observers);
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->status, RunStatus::kInterrupted);
+  EXPECT_EQ(EndOf(*summary, folder.Path("run")).code(), ErrorCode::kInterrupted);
+  EXPECT_EQ(summary->frames_tracked, 1);
   ExpectReadable(folder.Path("run"), 1);
 }
 

@@ -110,10 +110,26 @@ TEST_F(LiveRun, ThatIsStoppedEndsLikeASequence) {
   pipe.GiveUp();
   sender.join();
   ASSERT_TRUE(summary.ok()) << summary.status().message();
-  EXPECT_EQ(summary->status, RunStatus::kInterrupted);  // there is no map yet
-  EXPECT_THAT(summary->note, testing::HasSubstr("stopped on request"));
+  EXPECT_EQ(summary->status, RunStatus::kCompleted);
   EXPECT_GE(summary->frames_read, 10);
   EXPECT_LT(summary->frames_read, std::ssize(Rendered().frames));
+}
+
+TEST_F(LiveRun, ThatIsStoppedBeforeItHasAMapIsInterrupted) {
+  PipedVideo pipe;
+  std::thread sender([&] { Send(pipe); });
+  std::atomic<bool> stop = false;
+  StopAt observer(2, &stop);
+  RunRequest request = RequestOf("-", "stopped");
+  request.input.camera_path = folder_.Path("camera.yaml");
+  request.stop = &stop;
+  TrackObserver* const observers[] = {&observer};
+  const auto summary = RunTrack(request, options_, observers);
+  pipe.GiveUp();
+  sender.join();
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->status, RunStatus::kInterrupted);
+  EXPECT_THAT(summary->note, testing::StartsWith("stopped on request; the sequence ended without a first map"));
 }
 
 TEST_F(LiveRun, ShowsItsFirstImageAndIsStoppedBeforeItsImagesAreMeasured) {
