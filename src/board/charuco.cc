@@ -200,7 +200,8 @@ bool ShowsOtherCharuco(const cv::Mat& /*gray*/, const CalibrationBoard& /*board*
 
 Status CheckCharucoIsSupported(const CalibrationBoard& /*board*/) {
   return {ErrorCode::kInvalidArgument,
-          "this build cannot find ChArUco boards, because OpenCV came without its module aruco; use a chessboard"};
+          "this build cannot find ChArUco boards, because it was made without OpenCV's contributed module aruco; use a "
+          "chessboard, or build with it (on Debian: libopencv-contrib-dev)"};
 }
 
 std::optional<BoardView> FindCharuco(const cv::Mat& /*gray*/, const CalibrationBoard& /*board*/) {

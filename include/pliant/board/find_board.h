@@ -21,8 +21,8 @@ struct BoardView {
   std::vector<Eigen::Vector2d> pixels;
 };
 
-// Whether boards of this kind can be found by this build: kInvalidArgument where OpenCV came without its module aruco,
-// or the dictionary has no such name.
+// Whether boards of this kind can be found by this build: kInvalidArgument where it was made without OpenCV's module
+// aruco, or the dictionary has no such name.
 Status CheckBoardIsSupported(const CalibrationBoard& board);
 
 // Nothing where the board is not seen: as a whole, of a ChArUco board at least a third of its corners. A chessboard
