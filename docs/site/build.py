@@ -3,10 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Builds the documentation site from the Markdown of the project: the command behind `./run docs`.
 
-usage: build.py --program PLIANT --python_path FOLDER --output_path DIR
+usage: build.py --program PLIANT --python_path FOLDER --output_path DIR [--installed]
 
 PLIANT prints the manuals of its commands, FOLDER holds the built Python package. Leaves DIR/html (index.html is the
-first page), and in DIR/source what Sphinx and Doxygen read. Warnings are errors.
+first page), and in DIR/source what Sphinx and Doxygen read. Warnings are errors. --installed: commands call `pliant`,
+as who installed the packages does, and not the program of the build tree.
 
 The pages lie in the site as they lie in the project, so that their links hold in both. Pages that are made here: the
 options, the notebooks, the list of C++ headers.
@@ -236,6 +237,12 @@ def copy_pages(source):
     write(source / "index.md", text + "".join(toctree(pages, caption) for caption, pages in NAVIGATION))
 
 
+def call_installed_program(source):
+    for page in source.rglob("*.md"):
+        text = re.sub(r"^( {4,})build/release/pliant ", r"\1pliant ", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+        page.write_text(text, encoding="utf-8")
+
+
 def copy(path, target):
     target.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy2(path, target)
@@ -279,10 +286,13 @@ def main():
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--python_path", type=pathlib.Path, required=True)
     parser.add_argument("--output_path", type=pathlib.Path, required=True)
+    parser.add_argument("--installed", action="store_true")
     given = parser.parse_args()
     output = given.output_path.resolve()
     source, extra, html = output / "source", output / "extra", output / "html"
     copy_pages(source)
+    if given.installed:
+        call_installed_program(source)
     write_options(given.program.resolve(), source)
     write_notebooks(source)
     write_experiments(source)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The site of `./run docs` builds without a warning and shows what it was made of.
+"""The site of `./run docs`, here as in the package pliant-doc, builds without a warning and shows what it was made of.
 
 usage: site_test.py ROOT PLIANT PYTHON_PATH
 """
@@ -15,10 +15,11 @@ import tempfile
 import urllib.parse
 
 SKIPPED = 77
-# A text of each kind of page, by its file: of a page, an equation's number, a manual, a docstring in Python and one of
-# the compiled part, and the comments of a header, a function and a member.
+# A text of each kind of page, by its file: of a page, a command, an equation's number, a manual, a docstring in Python
+# and one of the compiled part, and the comments of a header, a function and a member.
 SHOWN = (
     ("index.html", "Your own video"),
+    ("docs/evaluation.html", "<pre><span></span>pliant evaluate run --sequence SEQ"),
     ("docs/method.html", 'id="E7"'),
     ("docs/method.html", 'href="#E7"'),
     ("docs/method.html", 'class="katex-display"'),
@@ -63,8 +64,8 @@ def main(root, program, python_path):
     with tempfile.TemporaryDirectory() as folder:
         result = subprocess.run(
             [sys.executable, "-B", str(root / "docs" / "site" / "build.py"), "--program", program, "--python_path",
-             python_path, "--output_path", folder], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            check=False)
+             python_path, "--output_path", folder, "--installed"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            text=True, check=False)
         print(result.stdout)
         if result.returncode:
             return 1

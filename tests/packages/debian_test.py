@@ -41,6 +41,9 @@ class Debian(unittest.TestCase):
     def test_a_package_is_built_with_what_run_installs(self):
         self.assertEqual(listed("build") - NOT_FOR_PACKAGES, stated("Source: pliant", "Build-Depends") - ONLY_FOR_PACKAGES)
 
+    def test_the_documentation_is_built_with_what_run_installs(self):
+        self.assertEqual(listed("docs"), stated("Source: pliant", "Build-Depends-Indep"))
+
     def test_the_library_depends_on_what_it_is_built_with(self):
         self.assertEqual(listed("build") - NOT_FOR_PACKAGES - NOT_FOR_USERS,
                          stated("Package: libpliant-dev", "Depends"))
