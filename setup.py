@@ -10,7 +10,7 @@ environment
 
 import os
 import pathlib
-import re
+import runpy
 import shlex
 import shutil
 import subprocess
@@ -45,8 +45,7 @@ class CMakeBuild(build_ext):
 
 
 def version():
-    text = (SOURCE / "include" / "pliant" / "base" / "version.h").read_text()
-    return re.search(r'kVersion = "([^"]+)"', text).group(1)
+    return runpy.run_path(str(SOURCE / "third_party_configs" / "debian" / "version.py"))["package_version"]()
 
 
 # What is built on the way stays out of the sources.
