@@ -5,23 +5,28 @@
 # usage: install_test.sh PACKAGES ROOT
 #
 # Makes a new, minimal Debian 12 in the folder ROOT, installs the packages of the folder PACKAGES with apt, uses each of
-# them as its users do, and purges them: nothing of them may be left. Then the same of the wheel, with pip. Runs as root, needs debootstrap and a network, and
-# takes some minutes. ROOT is removed first, and stays for a look when it fails.
+# them as its users do, and purges them: nothing of them may be left. Then the same of the wheel, with pip. The way from
+# the package to the report of a real recording, where there is one, takes five minutes at most. Runs as root, needs
+# debootstrap and a network, and takes some minutes. ROOT is removed first, and stays for a look when it fails.
 #
 # environment
 #   PLIANT_DEBIAN_MIRROR   the archive to install from (default: http://deb.debian.org/debian)
+#   PLIANT_RECORDINGS      the folder with the recording laparoscopy/endo.mp4 and its camera.yaml (experiments/recordings)
 set -euo pipefail
 
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 packages=$(realpath "$1")
 root=$(realpath -m "$2")
 mirror=${PLIANT_DEBIAN_MIRROR:-http://deb.debian.org/debian}
-names=(pliant python3-pliant libpliant-dev)
+recording=${PLIANT_RECORDINGS:-}/laparoscopy
+names=(pliant python3-pliant libpliant-dev pliant-doc)
 
 say() { printf '\n== %s\n' "$*"; }
 inside() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 HOME=/root DEBIAN_FRONTEND=noninteractive chroot "$root" "$@"; }
 package() { (cd "$packages" && echo "/tmp/$(ls "$1"_*.deb)"); }
 install() { inside apt-get -qq install -y --no-install-recommends "$@" >>"$root/tmp/apt.log" 2>&1 || { tail -30 "$root/tmp/apt.log"; return 1; }; }
+# Runs a command; `took` is the seconds that it needed.
+timed() { local start=$SECONDS; "$@"; took=$((SECONDS - start)); }
 # What Bash offers for the last of the words.
 completed() {
   inside bash -c '. /usr/share/bash-completion/completions/pliant; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _pliant
@@ -58,7 +63,10 @@ cp "$packages"/*.deb "$root/tmp"
 
 say "pliant"
 before_kb=$(installed_kb)
-install "$(package pliant)"
+timed install --download-only "$(package pliant)"
+download_s=$took
+timed install "$(package pliant)"
+install_s=$took
 after_kb=$(installed_kb)
 echo "$(((after_kb - before_kb) / 1024)) MB installed, with everything that it depends on"
 inside pliant --version
@@ -67,6 +75,35 @@ inside bash -c '. /usr/share/bash-completion/completions/pliant && complete -p p
 offered=$(completed pliant calibrate --ri)
 echo "pliant calibrate --ri is completed to: $offered"
 test "$offered" = --right_path
+
+say "from the package to a report"
+if [[ -f $recording/endo.mp4 && -f $recording/camera.yaml ]]; then
+  mkdir "$root/tmp/recording"
+  cp "$recording"/{endo.mp4,camera.yaml} "$root/tmp/recording"
+  timed inside env -C /tmp/recording pliant track endo.mp4
+  track_s=$took
+  run=$(cd "$root/tmp/recording" && ls -d endo*/)
+  timed inside env -C /tmp/recording pliant report "$run" -o page.html
+  report_s=$took
+  test -s "$root/tmp/recording/page.html"
+  all_s=$((install_s + track_s + report_s))
+  echo "apt-get install: $install_s s ($download_s s of download before), track: $track_s s, report: $report_s s"
+  if ((all_s > 300)); then echo "these are $all_s s, more than five minutes" && exit 1; fi
+else
+  echo "left out: there is no recording (PLIANT_RECORDINGS)"
+fi
+
+# The example of the manual, on the images that it speaks of.
+say "a ChArUco board"
+example=$(inside pliant calibrate --help | sed -n 's/^ *\(pliant calibrate .*charuco:.*\)/\1/p')
+inside pliant simulate --quiet --output_path /tmp/charuco --Scene.kind board --Scene.board charuco:8x5:10:7:5X5_100 \
+  --Trajectory.kind board --Trajectory.fps 1 --Trajectory.frames 24 --Camera.model OPENCV_FISHEYE \
+  --Camera.params 400,400,319.5,239.5,0.01,0,0,0
+mv "$root/tmp/charuco/images" "$root/tmp/boards"
+echo "$example"
+inside env -C /tmp bash -c "$example" | grep '^error'
+test -s "$root/tmp/camera.png"
+grep -E '^params: \[(399|400)\.' "$root/tmp/camera.yaml"
 
 say "man pages"
 install man-db
@@ -93,6 +130,17 @@ cp -r "$source/tests/python" "$root/tmp/tests"
 inside pliant simulate --quiet --output_path /tmp/rigid --Trajectory.frames 60
 inside pliant track /tmp/rigid --quiet --output_path /tmp/rigid_run
 test_python python3
+
+say "pliant-doc"
+install "$(package pliant-doc)"
+cp "$source/tests/docs/site_test.py" "$root/tmp"
+inside env PYTHONPATH=/tmp python3 -B -c '
+import pathlib, site_test, sys
+html = pathlib.Path("/usr/share/doc/pliant/html")
+broken = list(site_test.broken_links(html))
+print(len(list(html.rglob("*.html"))), "pages,", len(broken), "links lead nowhere", *broken)
+sys.exit(1 if broken else 0)
+'
 
 say "libpliant-dev"
 install "$(package libpliant-dev)" cmake g++ make
