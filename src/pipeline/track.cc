@@ -60,7 +60,8 @@ Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note
   if (tracker.state() == TrackingState::kLost || tracker.HasInactiveSubmaps())
     return {RunStatus::kLost, "after frame " + last_tracked + "; in the sequence's last frame: " + last_note};
   if (frames == 1)
-    return {RunStatus::kFailed, "one frame is not enough for a map; give two or more, between which the camera moved"};
+    return {RunStatus::kFailed, "one frame is not enough for a map; give two or more, between which the camera moved",
+            ErrorCode::kInsufficient, true};
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note + other_starts,
           ErrorCode::kInsufficient, true};
 }

@@ -40,13 +40,14 @@ class LiveRun : public testing::Test {
     request.output_path = folder_.Path(name);
     return request;
   }
+  static cv::Mat Gray(const cv::Mat& image) {
+    cv::Mat gray = image;
+    if (image.channels() == 3) cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+    return gray;
+  }
   void Send(const PipedVideo& pipe) const {
     pipe.Header(Rendered().camera.width(), Rendered().camera.height(), kFps);
-    for (const SimulatedFrame& frame : Rendered().frames) {
-      cv::Mat gray = frame.image;
-      if (gray.channels() == 3) cv::cvtColor(frame.image, gray, cv::COLOR_BGR2GRAY);
-      pipe.Image(gray);
-    }
+    for (const SimulatedFrame& frame : Rendered().frames) pipe.Image(Gray(frame.image));
   }
 
   TestFolder folder_;
@@ -117,7 +118,10 @@ TEST_F(LiveRun, ThatIsStoppedEndsLikeASequence) {
 
 TEST_F(LiveRun, ThatIsStoppedBeforeItHasAMapIsInterrupted) {
   PipedVideo pipe;
-  std::thread sender([&] { Send(pipe); });
+  std::thread sender([&] {  // a camera that stands still
+    pipe.Header(Rendered().camera.width(), Rendered().camera.height(), kFps);
+    for (std::size_t k = 0; k < Rendered().frames.size(); ++k) pipe.Image(Gray(Rendered().frames.front().image));
+  });
   std::atomic<bool> stop = false;
   StopAt observer(2, &stop);
   RunRequest request = RequestOf("-", "stopped");
