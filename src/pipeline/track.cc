@@ -330,6 +330,20 @@ Result<RunWriter> BeginWriting(const RunRequest& request, const TrackOptions& us
                            ColumnsOfFrames(request.extensions), writer_options);
 }
 
+// Null for files, and where images are given.
+Result<std::shared_ptr<LiveSource>> OpenIfLive(const LiveInputOptions& options, RunRequest* request) {
+  if (request->input.given || !IsLiveSource(request->input.image_path)) return std::shared_ptr<LiveSource>();
+  return OpenLive(options, request);
+}
+
+// `observers` are shown the first image.
+ImageWatch WatchOf(const RunRequest& request, std::span<TrackObserver* const> observers) {
+  return {[observers](const SequenceFrame& first) {
+            for (TrackObserver* observer : observers) observer->OnImage(first.frame_idx, first.image);
+          },
+          request.stop};
+}
+
 }  // namespace
 
 Status EndOf(const RunSummary& summary, const std::string& output_path) {
@@ -357,12 +371,8 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
     if (!opened.ok()) return opened.status();
     checkpoint = *std::move(opened);
   }
-  std::shared_ptr<LiveSource> live;
-  if (!request.input.given && IsLiveSource(request.input.image_path)) {
-    auto opened = OpenLive(wanted.live_input, &request);
-    if (!opened.ok()) return opened.status();
-    live = *std::move(opened);
-  }
+  const auto live = OpenIfLive(wanted.live_input, &request);
+  if (!live.ok()) return live.status();
   const TrackOptions options = request.input.IsLive() ? ForLiveInput(wanted) : wanted;
   if (options.tracker.depth_prior.IsGiven()) request.input.depth_prior_path = options.tracker.depth_prior.path;
   TrackOptions usable = UsableOptions(options, request.input);
@@ -377,11 +387,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   const auto truth = TruthOf(options, request, **sequence);
   if (!truth.ok()) return truth.status();
 
-  const ImageWatch watch{[&](const SequenceFrame& first) {
-                           if (checkpoint) return;
-                           for (TrackObserver* observer : observers) observer->OnImage(first.frame_idx, first.image);
-                         },
-                         given.stop};
+  const ImageWatch watch = WatchOf(given, checkpoint ? std::span<TrackObserver* const>() : observers);
   const auto start = ReadStart(request, usable, **sequence, watch);
   if (!start.ok()) return start.status();
   if (const Status begun = PassOldImages(options, *start, &request.input, &*sequence); !begun.ok()) return begun;
@@ -404,11 +410,11 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   }
   for (TrackObserver* observer : observers) observer->OnStart(std::max(frames, 0));
   Ending ending = loop.Run();
-  if (live && watch.IsStopped()) ending = OfStopped(std::move(ending));
+  if (*live && watch.IsStopped()) ending = OfStopped(std::move(ending));
   TellOfImages(checked, observers, &warnings);
   TellOfPrior(writer->summary(), observers);
   writer->SetWarnings(std::move(warnings));
-  return FinishRun(*writer, live.get(), std::move(ending));
+  return FinishRun(*writer, live->get(), std::move(ending));
 }
 
 }  // namespace pliant
