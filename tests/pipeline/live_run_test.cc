@@ -4,6 +4,7 @@
 // Runs whose images arrive while they are tracked.
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <thread>
 
@@ -98,59 +99,51 @@ class StopAt final : public TrackObserver {
   bool has_started_ = false;
 };
 
-TEST_F(LiveRun, ThatIsStoppedEndsLikeASequence) {
-  PipedVideo pipe;
-  std::thread sender([&] { Send(pipe); });  // and no end
-  std::atomic<bool> stop = false;
-  StopAt observer(9, &stop);
-  RunRequest request = RequestOf("-", "stopped");
-  request.input.camera_path = folder_.Path("camera.yaml");
-  request.stop = &stop;
-  TrackObserver* const observers[] = {&observer};
-  const auto summary = RunTrack(request, options_, observers);
-  pipe.GiveUp();
-  sender.join();
+// Runs on a pipe into which `send` writes images without end, and which is stopped when an image is shown.
+class StoppedLiveRun : public LiveRun {
+ protected:
+  Result<RunSummary> StopAtImage(int frame_idx, const std::function<void(const PipedVideo&)>& send) {
+    PipedVideo pipe;
+    std::thread sender([&] { send(pipe); });
+    std::atomic<bool> stop = false;
+    StopAt observer(frame_idx, &stop);
+    RunRequest request = RequestOf("-", "stopped");
+    request.input.camera_path = folder_.Path("camera.yaml");
+    request.stop = &stop;
+    TrackObserver* const observers[] = {&observer};
+    Result<RunSummary> summary = RunTrack(request, options_, observers);
+    pipe.GiveUp();
+    sender.join();
+    has_started_ = observer.has_started();
+    return summary;
+  }
+
+  bool has_started_ = false;
+};
+
+TEST_F(StoppedLiveRun, EndsLikeASequence) {
+  const auto summary = StopAtImage(9, [&](const PipedVideo& pipe) { Send(pipe); });
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->status, RunStatus::kCompleted);
   EXPECT_GE(summary->frames_read, 10);
   EXPECT_LT(summary->frames_read, std::ssize(Rendered().frames));
 }
 
-TEST_F(LiveRun, ThatIsStoppedBeforeItHasAMapIsInterrupted) {
-  PipedVideo pipe;
-  std::thread sender([&] {  // a camera that stands still
+TEST_F(StoppedLiveRun, BeforeItHasAMapIsInterrupted) {
+  const auto summary = StopAtImage(2, [&](const PipedVideo& pipe) {  // a camera that stands still
     pipe.Header(Rendered().camera.width(), Rendered().camera.height(), kFps);
     for (std::size_t k = 0; k < Rendered().frames.size(); ++k) pipe.Image(Gray(Rendered().frames.front().image));
   });
-  std::atomic<bool> stop = false;
-  StopAt observer(2, &stop);
-  RunRequest request = RequestOf("-", "stopped");
-  request.input.camera_path = folder_.Path("camera.yaml");
-  request.stop = &stop;
-  TrackObserver* const observers[] = {&observer};
-  const auto summary = RunTrack(request, options_, observers);
-  pipe.GiveUp();
-  sender.join();
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->status, RunStatus::kInterrupted);
   EXPECT_THAT(summary->note, testing::StartsWith("stopped on request; the sequence ended without a first map"));
 }
 
-TEST_F(LiveRun, ShowsItsFirstImageAndIsStoppedBeforeItsImagesAreMeasured) {
-  PipedVideo pipe;
-  std::thread sender([&] { Send(pipe); });
-  std::atomic<bool> stop = false;
-  StopAt observer(0, &stop);
+TEST_F(StoppedLiveRun, ShowsItsFirstImageAndEndsBeforeItsImagesAreMeasured) {
   options_.image.working = WorkingImageMode::kMeasured;
-  RunRequest request = RequestOf("-", "stopped");
-  request.input.camera_path = folder_.Path("camera.yaml");
-  request.stop = &stop;
-  TrackObserver* const observers[] = {&observer};
-  const auto summary = RunTrack(request, options_, observers);
-  pipe.GiveUp();
-  sender.join();
+  const auto summary = StopAtImage(0, [&](const PipedVideo& pipe) { Send(pipe); });
   EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted);
-  EXPECT_FALSE(observer.has_started());
+  EXPECT_FALSE(has_started_);
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("stopped")));
 }
 
