@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 
 #include <opencv2/imgproc.hpp>
 
@@ -26,7 +28,7 @@ double ParabolaPeak(double left, double center, double right) {
   return curvature < 0 ? std::clamp(0.5 * (left - right) / curvature, -0.5, 0.5) : 0;
 }
 
-// Local maxima of the corner response on usable pixels, strongest first; ties by row, then column.
+// Local maxima of the corner response on usable pixels, by row, then column.
 std::vector<Corner> Candidates(const cv::Mat& gray, const cv::Mat& valid, const CornerOptions& options) {
   cv::Mat response, peaks;
   cv::cornerMinEigenVal(gray, response, options.block_size_px, 3);
@@ -47,24 +49,18 @@ std::vector<Corner> Candidates(const cv::Mat& gray, const cv::Mat& valid, const 
       corners.push_back(corner);
     }
   }
-  std::stable_sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.score > b.score; });
   return corners;
 }
 
-void DropWeak(double quality_level, double noise_floor, std::vector<Corner>* corners) {
+void DropWeak(double quality_level, std::vector<Corner>* corners) {
   if (corners->empty()) return;
-  const auto rank = static_cast<std::size_t>((1 - kReferenceQuantile) * static_cast<double>(corners->size()));
-  const double limit = std::max(quality_level * (*corners)[rank].score, noise_floor);
+  std::vector<double> scores;
+  scores.reserve(corners->size());
+  for (const Corner& corner : *corners) scores.push_back(corner.score);
+  const auto rank = static_cast<std::ptrdiff_t>((1 - kReferenceQuantile) * static_cast<double>(scores.size()));
+  std::nth_element(scores.begin(), scores.begin() + rank, scores.end(), std::greater<>());
+  const double limit = std::max(quality_level * scores[static_cast<std::size_t>(rank)], kNoiseFloor);
   std::erase_if(*corners, [&](const Corner& c) { return c.score < limit; });
-}
-
-void DropContours(const cv::Mat& gray, const CornerOptions& options, std::vector<Corner>* corners) {
-  std::vector<Eigen::Vector2d> pixels;
-  for (const Corner& corner : *corners) pixels.push_back(corner.pixel);
-  const std::vector<double> measures = ContourMeasure(gray, pixels, options.contour_radius_px);
-  for (std::size_t i = 0; i < corners->size(); ++i) (*corners)[i].contour = measures[i];
-  if (options.contour_filter == Switch::kOn)
-    std::erase_if(*corners, [&](const Corner& c) { return c.contour > options.contour_threshold; });
 }
 
 // Square cells, about one for every wanted corner, each with the points that lie in it.
@@ -118,7 +114,8 @@ void CornerOptions::List(OptionTable& table) {
 // Rounds: in round k every cell that holds k points takes its strongest candidate left, strong cells first, until
 // enough are taken. So each part of the image gets its share before any part gets more.
 std::vector<std::size_t> SpreadPoints(std::span<const Eigen::Vector2d> pixels, const cv::Mat& valid,
-                                      std::span<const Eigen::Vector2d> existing, const CornerOptions& options) {
+                                      std::span<const Eigen::Vector2d> existing, const CornerOptions& options,
+                                      const std::function<bool(std::size_t)>& accepts) {
   const double area = std::max(1, cv::countNonZero(valid));
   const double wanted = options.max_corners + static_cast<double>(existing.size());
   Cells cells(valid.size(), std::max({std::sqrt(area / wanted), options.min_distance_px, 1.0}));
@@ -133,6 +130,7 @@ std::vector<std::size_t> SpreadPoints(std::span<const Eigen::Vector2d> pixels, c
       done[i] = 1;
       --left;
       if (cells.Crowded(pixels[i], std::max(options.min_distance_px, kSamePoint_px))) continue;
+      if (accepts && !accepts(i)) continue;
       cells.Take(pixels[i]);
       chosen.push_back(i);
     }
@@ -146,12 +144,18 @@ std::vector<Corner> DetectCorners(const cv::Mat& gray, const cv::Mat& valid, std
   assert(valid.empty() || (valid.type() == CV_8UC1 && valid.size() == gray.size()));
   const cv::Mat usable = valid.empty() ? cv::Mat(gray.size(), CV_8UC1, cv::Scalar(255)) : valid;
   std::vector<Corner> candidates = Candidates(gray, usable, options);
-  DropWeak(options.quality_level, kNoiseFloor, &candidates);
-  DropContours(gray, options, &candidates);
+  DropWeak(options.quality_level, &candidates);
+  std::ranges::stable_sort(candidates, std::greater<>(), &Corner::score);  // ties stay by row, then column
   std::vector<Eigen::Vector2d> pixels;
   for (const Corner& candidate : candidates) pixels.push_back(candidate.pixel);
+  const ContourMeasure contours(gray, options.contour_radius_px);
+  const auto is_off_contours = [&](std::size_t i) {
+    candidates[i].contour = contours.At(candidates[i].pixel);
+    return options.contour_filter == Switch::kOff || candidates[i].contour <= options.contour_threshold;
+  };
   std::vector<Corner> corners;
-  for (const std::size_t i : SpreadPoints(pixels, usable, existing, options)) corners.push_back(candidates[i]);
+  for (const std::size_t i : SpreadPoints(pixels, usable, existing, options, is_off_contours))
+    corners.push_back(candidates[i]);
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return a.pixel.y() != b.pixel.y() ? a.pixel.y() < b.pixel.y() : a.pixel.x() < b.pixel.x();
   });

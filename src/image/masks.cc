@@ -23,19 +23,12 @@ cv::Mat Disc(int radius) {
   return cv::getStructuringElement(cv::MORPH_ELLIPSE, cv::Size(2 * radius + 1, 2 * radius + 1));
 }
 
-// Leaves of a mask the pixels where max - min <= limit * max over the channels.
-void KeepPale(const cv::Mat& image, double limit, cv::Mat* mask) {
-  if (image.channels() == 1) return;
-  const int limit_256 = static_cast<int>(limit * 256);
-  for (int y = 0; y < image.rows; ++y) {
-    const auto* in = image.ptr<cv::Vec3b>(y);
-    auto* out = mask->ptr<std::uint8_t>(y);
-    for (int x = 0; x < image.cols; ++x) {
-      if (out[x] == 0) continue;
-      const auto [low, high] = std::minmax({in[x][0], in[x][1], in[x][2]});
-      if (256 * (high - low) > limit_256 * high) out[x] = 0;
-    }
-  }
+// Whether max - min <= limit * max over the channels.
+bool IsPale(const cv::Mat& image, int y, int x, double limit) {
+  if (image.channels() == 1) return true;
+  const auto& bgr = image.at<cv::Vec3b>(y, x);
+  const auto [low, high] = std::minmax({bgr[0], bgr[1], bgr[2]});
+  return 256 * (high - low) <= static_cast<int>(limit * 256) * high;
 }
 
 cv::Mat LocalMedian(const cv::Mat& gray) {
@@ -72,11 +65,20 @@ std::vector<cv::Point> RowEnds(const cv::Mat& bright, cv::Size full) {
 cv::Mat HighlightMaskOf(const cv::Mat& image, const cv::Mat& gray, const MaskOptions& options) {
   cv::Mat mask = gray >= std::min(options.highlight_level, options.highlight_near_level);
   if (cv::countNonZero(mask) == 0) return mask;
-  cv::Mat stands_out;
-  cv::subtract(gray, LocalMedian(gray), stands_out);  // saturates at 0
-  cv::Mat near = (gray >= options.highlight_near_level) & (stands_out >= options.highlight_contrast);
-  KeepPale(image, options.highlight_saturation, &near);
-  mask = (gray >= options.highlight_level) | near;
+  const cv::Mat median = LocalMedian(gray);
+  const auto is_highlight = [&](int y, int x) {
+    const int level = gray.at<std::uint8_t>(y, x);
+    if (level >= options.highlight_level) return true;
+    return level >= options.highlight_near_level &&
+           std::max(0, level - median.at<std::uint8_t>(y, x)) >= options.highlight_contrast &&
+           IsPale(image, y, x, options.highlight_saturation);
+  };
+  for (int y = 0; y < mask.rows; ++y) {
+    auto* row = mask.ptr<std::uint8_t>(y);
+    const auto* end = row + mask.cols;
+    for (auto* at = std::find(row, row + mask.cols, 255); at != end; at = std::find(at + 1, row + mask.cols, 255))
+      if (!is_highlight(y, static_cast<int>(at - row))) *at = 0;
+  }
   if (options.highlight_dilation_px > 0) cv::dilate(mask, mask, Disc(options.highlight_dilation_px));
   return mask;
 }
@@ -125,7 +127,8 @@ cv::Mat DarkBorderMask(const cv::Mat& gray, const MaskOptions& options) {
   std::vector<cv::Point> hull;
   cv::convexHull(ends, hull);
   cv::fillConvexPoly(mask, hull, cv::Scalar(0));
-  if (options.border_dilation_px > 0) cv::dilate(mask, mask, Disc(options.border_dilation_px));
+  if (options.border_dilation_px > 0 && cv::countNonZero(mask) > 0)
+    cv::dilate(mask, mask, Disc(options.border_dilation_px));
   return mask;
 }
 

@@ -141,17 +141,17 @@ cv::Mat Occlusion() {
 
 TEST(ContourMeasure, IsHighOnAnOccludingContourAndLowOnTextureLinesAndShading) {
   const cv::Mat occlusion = Occlusion();
-  EXPECT_GT(ContourMeasure(occlusion, std::vector<Eigen::Vector2d>{{ContourColumn(120), 120}}, 16)[0], kContour);
-  EXPECT_LT(ContourMeasure(occlusion, std::vector<Eigen::Vector2d>{{60, 120}}, 16)[0], kNoContour);
+  EXPECT_GT(ContourMeasure(occlusion, 16).At({ContourColumn(120), 120}), kContour);
+  EXPECT_LT(ContourMeasure(occlusion, 16).At({60, 120}), kNoContour);
   cv::Mat vessel(kSize, CV_8UC1, cv::Scalar(160));
   cv::line(vessel, {160, 0}, {160, 239}, cv::Scalar(80), 4);
-  EXPECT_LT(ContourMeasure(vessel, std::vector<Eigen::Vector2d>{{158, 120}}, 16)[0], kNoContour);
+  EXPECT_LT(ContourMeasure(vessel, 16).At({158, 120}), kNoContour);
   cv::Mat shading(kSize, CV_8UC1);
   for (int x = 0; x < kSize.width; ++x) {
     const int gray = 40 + x / 2;
     shading.col(x).setTo(gray);
   }
-  EXPECT_LT(ContourMeasure(shading, std::vector<Eigen::Vector2d>{{160, 120}}, 16)[0], kNoContour);
+  EXPECT_LT(ContourMeasure(shading, 16).At({160, 120}), kNoContour);
 }
 
 TEST(DetectCorners, ContourFilterKeepsCornersOffAnOccludingContour) {

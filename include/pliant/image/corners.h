@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,7 @@ struct CornerOptions {
 struct Corner {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double score = 0;    // smaller eigenvalue of the mean gradient tensor, (gray levels / px)^2 (eq. P11)
-  double contour = 0;  // ContourMeasure at the corner
+  double contour = 0;  // ContourMeasure::At the corner
 };
 
 // At most `options.max_corners` corners of a CV_8UC1 image. `valid`: CV_8UC1 of the same size, 0 = not usable; or
@@ -44,14 +45,25 @@ std::vector<Corner> DetectCorners(const cv::Mat& gray, const cv::Mat& valid, std
 
 // Of points in order of preference, those that are taken: at most `options.max_corners`, options.min_distance_px apart
 // and from those that exist, spread so that each part of the usable image gets its share before any gets more. Places
-// in `pixels`, in the order taken. `valid` is not empty; it and `existing` as in DetectCorners.
+// in `pixels`, in the order taken. `valid` is not empty; it and `existing` as in DetectCorners. A point that would be
+// taken and is not accepted (asked by its place, at most once) is passed over; empty: all are.
 std::vector<std::size_t> SpreadPoints(std::span<const Eigen::Vector2d> pixels, const cv::Mat& valid,
-                                      std::span<const Eigen::Vector2d> existing, const CornerOptions& options);
+                                      std::span<const Eigen::Vector2d> existing, const CornerOptions& options,
+                                      const std::function<bool(std::size_t)>& accepts = {});
 
-// How much the surroundings of each pixel look like an occluding contour, 0 to 1, in a CV_8UC1 image: with the light at
-// the camera a near surface is bright and a far one dark, so a contour is a step between two sides that are each far
-// more alike within themselves than to each other, at a scale coarser than texture. Sides are compared up to
-// `radius_px` away, in logarithms of brightness (docs/method.md, eq. P12).
-std::vector<double> ContourMeasure(const cv::Mat& gray, std::span<const Eigen::Vector2d> pixels, int radius_px);
+// How much the surroundings of a pixel look like an occluding contour in a CV_8UC1 image: with the light at the camera
+// a near surface is bright and a far one dark, so a contour is a step between two sides that are each far more alike
+// within themselves than to each other, at a scale coarser than texture. Sides are compared up to `radius_px` (2 or
+// more) away, in logarithms of brightness (docs/method.md, eq. P12).
+class ContourMeasure {
+ public:
+  ContourMeasure(const cv::Mat& gray, int radius_px);
+  // 0 to 1; outside the image as at its nearest pixel.
+  double At(const Eigen::Vector2d& pixel) const;
+
+ private:
+  double step_px_;
+  cv::Mat mean_, mean_square_;  // CV_32FC1, of the logarithms around each pixel
+};
 
 }  // namespace pliant

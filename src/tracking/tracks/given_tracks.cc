@@ -51,19 +51,15 @@ std::vector<NewTrack> GivenTracks::AddNew(const PreparedFrame& frame, std::span<
       offers.push_back({&track, seen->pixel, LengthFrom(track, frame.frame_idx)});
   if (offers.empty()) return {};
   std::ranges::stable_sort(offers, std::ranges::greater(), &Offer::length);
-  const auto pixels_of = [](const std::vector<Offer>& some) {
-    std::vector<Eigen::Vector2d> pixels;
-    for (const Offer& offer : some) pixels.push_back(offer.pixel);
-    return pixels;
-  };
   if (corners.contour_filter == Switch::kOn) {
-    const std::vector<double> contours = ContourMeasure(frame.gray, pixels_of(offers), corners.contour_radius_px);
+    const ContourMeasure contours(frame.gray, corners.contour_radius_px);
     std::vector<Offer> off_contours;
-    for (std::size_t i = 0; i < offers.size(); ++i)
-      if (contours[i] <= corners.contour_threshold) off_contours.push_back(offers[i]);
+    for (const Offer& offer : offers)
+      if (contours.At(offer.pixel) <= corners.contour_threshold) off_contours.push_back(offer);
     if (existing.size() + off_contours.size() >= kFewTracks) offers = std::move(off_contours);
   }
-  const std::vector<Eigen::Vector2d> pixels = pixels_of(offers);
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Offer& offer : offers) pixels.push_back(offer.pixel);
   const cv::Mat valid =
       frame.mask.unrestricted() ? cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(255)) : frame.mask.valid();
   std::vector<NewTrack> added;
