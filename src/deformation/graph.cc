@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include <flann/flann.hpp>  // the only file that includes FLANN; OpenCV's headers clash with it
+
+#include "pliant/base/parallel.h"
 
 namespace pliant {
 namespace {
@@ -22,6 +26,7 @@ bool AllFinite(Points points) {
 }
 
 constexpr int kNobody = -1;
+constexpr int kQueriesAtOnce = 64;  // by one thread
 
 // The `count` nearest to a position, by distance and then by index, without one of them: breaks ties, at the price of a
 // look at every point.
@@ -38,7 +43,7 @@ std::vector<int> NearestByScan(Points points, const Eigen::Vector3d& query, int 
 
 // The nearest points of each query position; where `queries_are_points`, each query is the point of its index, which is
 // left out.
-NeighborLists Nearest(Points points, Points queries, bool queries_are_points, int neighbors) {
+NeighborLists Nearest(Points points, Points queries, bool queries_are_points, int neighbors, int threads) {
   const int num_points = static_cast<int>(points.size());
   const int num_queries = static_cast<int>(queries.size());
   const int count = std::min(neighbors, num_points - (queries_are_points ? 1 : 0));
@@ -59,40 +64,51 @@ NeighborLists Nearest(Points points, Points queries, bool queries_are_points, in
   std::vector<double> distances(indices.size());
   flann::Matrix<std::size_t> index_rows(indices.data(), num_queries, asked);
   flann::Matrix<double> distance_rows(distances.data(), num_queries, asked);
-  index.knnSearch(query_matrix, index_rows, distance_rows, asked, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-
-  std::vector<std::pair<double, int>> others;
-  for (int i = 0; i < num_queries; ++i) {
+  const auto list_of = [&](int i) {
     const int itself = queries_are_points ? i : kNobody;
     const double* row = distance_rows[i];
     const bool contested = asked > wanted && row[wanted] - row[wanted - 1] <= kTie * row[wanted];
-    if (contested) {
-      lists[i] = NearestByScan(points, queries[i], itself, count);
-      continue;
-    }
+    if (contested) return NearestByScan(points, queries[i], itself, count);
+    thread_local std::vector<std::pair<double, int>> others;
     others.clear();
     for (int k = 0; k < asked; ++k)
       if (const int j = static_cast<int>(index_rows[i][k]); j != itself) others.emplace_back(row[k], j);
     std::sort(others.begin(), others.end());
-    for (int k = 0; k < count; ++k) lists[i].push_back(others[static_cast<std::size_t>(k)].second);
-  }
+    std::vector<int> nearest(static_cast<std::size_t>(count));
+    for (std::size_t k = 0; k < nearest.size(); ++k) nearest[k] = others[k].second;
+    return nearest;
+  };
+  const int blocks = (num_queries + kQueriesAtOnce - 1) / kQueriesAtOnce;
+  const auto search = [&](int block) {
+    const int begin = block * kQueriesAtOnce;
+    const int end = std::min(begin + kQueriesAtOnce, num_queries);
+    const auto rows_of = [&](auto& all) { return std::decay_t<decltype(all)>(all[begin], end - begin, all.cols); };
+    auto block_indices = rows_of(index_rows);
+    auto block_distances = rows_of(distance_rows);
+    index.knnSearch(rows_of(query_matrix), block_indices, block_distances, asked,
+                    flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    for (int i = begin; i < end; ++i) lists[i] = list_of(i);
+  };
+  ParallelFor(blocks, threads, search, 1);
   return lists;
 }
 
 // The directed pairs of the lists as edges i < j in ascending order, each with the number of its directions.
 std::vector<GraphEdge> MergeDirections(const NeighborLists& lists) {
-  std::vector<std::pair<int, int>> pairs;
-  for (int i = 0; i < static_cast<int>(lists.size()); ++i)
-    for (const int j : lists[i]) pairs.push_back(std::minmax(i, j));
-  std::sort(pairs.begin(), pairs.end());
+  const auto num_points = static_cast<int>(lists.size());
+  std::vector<std::vector<int>> later(lists.size());  // the j > i of each i, twice where both have the other
+  for (int i = 0; i < num_points; ++i)
+    for (const int j : lists[i]) later[std::min(i, j)].push_back(std::max(i, j));
 
   std::vector<GraphEdge> edges;
-  edges.reserve(pairs.size());
-  for (const auto& [i, j] : pairs) {
-    if (!edges.empty() && edges.back().i == i && edges.back().j == j) {
-      edges.back().multiplicity = 2;
-    } else {
-      edges.push_back({.i = i, .j = j});
+  for (int i = 0; i < num_points; ++i) {
+    std::sort(later[i].begin(), later[i].end());
+    for (const int j : later[i]) {
+      if (!edges.empty() && edges.back().i == i && edges.back().j == j) {
+        edges.back().multiplicity = 2;
+      } else {
+        edges.push_back({.i = i, .j = j});
+      }
     }
   }
   return edges;
@@ -100,7 +116,7 @@ std::vector<GraphEdge> MergeDirections(const NeighborLists& lists) {
 
 }  // namespace
 
-NeighborLists NearestNeighbors(Points positions, int count) { return Nearest(positions, positions, true, count); }
+NeighborLists NearestNeighbors(Points positions, int count) { return Nearest(positions, positions, true, count, 1); }
 
 NeighborLists NearestNeighborsApart(Points positions, double min_distance, int count) {
   NeighborLists neighbors(positions.size());
@@ -119,7 +135,7 @@ NeighborLists NearestNeighborsApart(Points positions, double min_distance, int c
 }
 
 NeighborLists NearestNeighbors(Points positions, Points queries, int count) {
-  return Nearest(positions, queries, false, count);
+  return Nearest(positions, queries, false, count, 1);
 }
 
 void GraphOptions::List(OptionTable& table) {
@@ -133,7 +149,8 @@ void GraphOptions::List(OptionTable& table) {
             0.0, 1e6);
 }
 
-Result<DeformationGraph> BuildDeformationGraph(Points positions, Points rest_positions, const GraphOptions& options) {
+Result<DeformationGraph> BuildDeformationGraph(Points positions, Points rest_positions, const GraphOptions& options,
+                                               int threads) {
   if (!rest_positions.empty() && rest_positions.size() != positions.size())
     return {ErrorCode::kMismatch, "the deformation graph was given " + std::to_string(positions.size()) +
                                       " positions but " + std::to_string(rest_positions.size()) + " rest positions"};
@@ -142,7 +159,7 @@ Result<DeformationGraph> BuildDeformationGraph(Points positions, Points rest_pos
 
   DeformationGraph graph;
   graph.num_points = static_cast<int>(positions.size());
-  graph.edges = MergeDirections(NearestNeighbors(positions, options.neighbors));
+  graph.edges = MergeDirections(Nearest(positions, positions, true, options.neighbors, threads));
   const double exponent = -1.0 / (2.0 * options.sigma_mm * options.sigma_mm);
   for (GraphEdge& edge : graph.edges) {
     const double squared_length = (positions[edge.i] - positions[edge.j]).squaredNorm();

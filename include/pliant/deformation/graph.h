@@ -73,10 +73,11 @@ NeighborLists NearestNeighborsApart(std::span<const Eigen::Vector3d> positions, 
 // The graph of `positions` (mm, any one frame). `rest_positions` are the same points undeformed; they may be empty when
 // nothing asks for them, and then rest lengths are the present lengths and no edge is cut. The search is exact, and
 // neighbors at equal distance are taken in the order of their index, so the answer depends on nothing but the input.
-// With N <= K points everyone is everyone's neighbor; with none or one there are no edges. Fails with kInvalidArgument
-// for positions that are not finite and with kMismatch for counts that differ.
+// With N <= K points everyone is everyone's neighbor; with none or one there are no edges. It does not depend on the
+// number of threads (at least 1) either. Fails with kInvalidArgument for positions that are not finite and with
+// kMismatch for counts that differ.
 Result<DeformationGraph> BuildDeformationGraph(std::span<const Eigen::Vector3d> positions,
                                                std::span<const Eigen::Vector3d> rest_positions,
-                                               const GraphOptions& options);
+                                               const GraphOptions& options, int threads = 1);
 
 }  // namespace pliant

@@ -142,7 +142,7 @@ Rigid3 FrameTracker::EstimatePose(const FollowedPoints& followed, StageTimes* ti
 // An empty graph where there is none: the points are then tied to nothing.
 DeformationGraph FrameTracker::BuildGraph(const FollowedPoints& followed, StageTimes* times) const {
   const StageTimer timer(times, Stage::kGraph);
-  auto graph = BuildDeformationGraph(followed.positions, followed.rest_positions, options_.graph);
+  auto graph = BuildDeformationGraph(followed.positions, followed.rest_positions, options_.graph, threads_);
   return graph.ok() ? *std::move(graph) : DeformationGraph{};
 }
 
