@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "photometric/patch_solution.h"
 
@@ -37,6 +38,16 @@ PatchFailure CutLevel(const ImagePyramid& pyramid, const SupportMask& mask, Pixe
 }
 
 }  // namespace
+
+ReferencePatch ReferencePatch::TakeForAlignment() {
+  ReferencePatch part{.center = center,
+                      .size = size,
+                      .levels = {},
+                      .solve_affine = std::exchange(solve_affine, {}),
+                      .offsets_affine = offsets_affine};
+  if (!empty()) part.levels.assign(1, levels.front());
+  return part;
+}
 
 PatchFailure CutReferencePatch(const ImagePyramid& pyramid, const SupportMask& mask, Pixel center,
                                const LucasKanadeOptions& options, AffineSolution affine, ReferencePatch* patch) {

@@ -68,12 +68,12 @@ PatchFailure PointTracker::Add(PointId id, const Eigen::Vector2d& pixel, const I
   const AffineSolution affine =
       options_.patch_policy == PatchPolicy::kAdaptive ? AffineSolution::kWith : AffineSolution::kWithout;
   const PatchFailure failure =
-      CutReferencePatch(pyramid, mask, ToPixel(pixel), options_.lucas_kanade, affine, &point.reference);
+      CutReferencePatch(pyramid, mask, ToPixel(pixel), options_.lucas_kanade, affine, &point.latest);
   if (failure != PatchFailure::kNone) {
     points_.erase(id);
     return failure;
   }
-  point.latest = point.reference;
+  point.TakeReference(options_.patch_policy);
   point.pixel = pixel;
   points_[id] = std::move(point);
   return PatchFailure::kNone;
@@ -206,7 +206,11 @@ PointTrack PointTracker::FindOne(const PointPrediction& prediction, const Images
   return track;
 }
 
-void PointTracker::Point::TakeStep() {
+void PointTracker::Point::TakeReference(PatchPolicy policy) {
+  reference = policy == PatchPolicy::kAdaptive ? latest.TakeForAlignment() : latest;
+}
+
+void PointTracker::Point::TakeStep(PatchPolicy policy) {
   next.attempt = 0;
   pixel = next.pixel;
   affine_from_reference = next.affine_from_reference;
@@ -214,7 +218,7 @@ void PointTracker::Point::TakeStep() {
   if (next.patch == Step::Patch::kKept) return;
   std::swap(latest, next.latest);
   if (next.patch == Step::Patch::kLatest) return;
-  reference = latest;
+  TakeReference(policy);
   reference_affine_from_first = next.affine_from_first;
   affine_from_reference.setIdentity();
   age = 0;
@@ -223,7 +227,7 @@ void PointTracker::Point::TakeStep() {
 void PointTracker::Keep(std::span<const PointId> ids) {
   for (const PointId id : ids)
     if (const auto found = points_.find(id); found != points_.end() && found->second.next.attempt == attempt_)
-      found->second.TakeStep();
+      found->second.TakeStep(options_.patch_policy);
 }
 
 std::vector<PointTrack> PointTracker::Track(const ImagePyramid& previous, const SupportMask& previous_mask,

@@ -115,7 +115,7 @@ class PointTracker {
     Eigen::Matrix2d affine_from_first = Eigen::Matrix2d::Identity();
   };
   struct Point {
-    ReferencePatch reference;                         // adaptive: the first; periodic: the last one cut
+    ReferencePatch reference;                         // adaptive: the first, for alignment; periodic: the last one cut
     ReferencePatch latest;                            // adaptive: cut in the latest image
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // in the latest image
     Eigen::Matrix2d affine_from_reference = Eigen::Matrix2d::Identity();
@@ -123,7 +123,8 @@ class PointTracker {
     int age = 0;  // images since the reference was cut
     Step next;
 
-    void TakeStep();
+    void TakeStep(PatchPolicy policy);
+    void TakeReference(PatchPolicy policy);  // the latest patch
   };
   struct Images;
 
