@@ -43,8 +43,9 @@ Status RunViews::ReadUntil(std::size_t position, const std::function<bool(std::s
     const auto frame = NextFrameOfRun(*known_.camera, posed.frame_idx,
                                       name != known_.names.end() ? name->second : std::string(), sequence_.get());
     if (!frame.ok()) return frame.status();
-    if (!is_needed(next_)) continue;
     const cv::Mat image = ImageOf(frame->image);
+    colors_.Compare(posed.observations, image);
+    if (!is_needed(next_)) continue;
     const SurfaceView& view =
         views_[next_] = {image, ValidMask(image, frame->mask, masks_), posed.cam_from_world, posed.observations};
     masks_given_[next_] = frame->mask;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/point_colors.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
 #include "pliant/image/masks.h"
@@ -40,7 +41,12 @@ class RunViews {
   // `pair_threads`: to bring right images into the run's unit; 0: these are not read.
   RunViews(std::unique_ptr<Sequence> sequence, const std::vector<PosedFrame>& frames, const RunMap& known,
            const MaskOptions& masks, int pair_threads = 0)
-      : sequence_(std::move(sequence)), frames_(frames), known_(known), masks_(masks), pair_threads_(pair_threads) {}
+      : sequence_(std::move(sequence)),
+        frames_(frames),
+        known_(known),
+        masks_(masks),
+        pair_threads_(pair_threads),
+        colors_(known) {}
 
   // Reads up to the frame at `position` of the posed frames, and keeps those for which `is_needed`. Fails as Sequence,
   // and with kMismatch where the images are not those of the run.
@@ -55,6 +61,8 @@ class RunViews {
   // CV_8UC1, 0 = not tissue: excluded by a mask, or outside of the field of view. Tissue under a highlight is.
   cv::Mat TissueIn(std::size_t position) const;
   void ForgetUnless(const std::function<bool(std::size_t)>& is_needed);
+  // Whether what was read so far shows other things than the run was tracked in.
+  bool AreOfOtherImages() const { return colors_.AreOfOtherImages(); }
 
  private:
   // As it is compared: of one time.
@@ -66,6 +74,7 @@ class RunViews {
   const RunMap& known_;
   const MaskOptions& masks_;
   int pair_threads_;
+  PointColors colors_;
   std::map<std::size_t, SurfaceView> views_;
   std::map<std::size_t, SurfaceView> rights_;
   std::map<std::size_t, cv::Mat> masks_given_;

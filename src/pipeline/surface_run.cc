@@ -38,6 +38,9 @@ namespace {
 
 constexpr const char* kNotTracked = "it was not tracked";
 constexpr const char* kNotInRun = "the run has no such frame";
+constexpr const char* kOtherImages =
+    "the images do not show the points in the colors that they had when they were tracked; are they the images of the "
+    "run? Name those with --sequence";
 
 // Which frames are to be done, and when: a frame is done when the last of its images has been read.
 struct Plan {
@@ -318,6 +321,7 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   const Status made =
       SurfaceMaker(request, options, callback, *estimator, ComparedWindowPx(tracked, options.depth), &*writer)
           .Make(*frames, plan, *known, &images, &summary);
+  if (images.AreOfOtherImages()) summary.warnings.push_back(kOtherImages);
   std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
   // Until the meshes are there too, the folder says that it was interrupted.
   const bool stopped = summary.stopped || !made.ok();
@@ -326,7 +330,8 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (!made.ok()) return made;
   if (!finished.ok()) return finished;
   if (std::ranges::none_of(summary.frames, [](const SurfaceFrame& frame) { return frame.known_share > 0.0; }))
-    return Status(ErrorCode::kInsufficient, "no frame has a depth: " + ReasonOf(summary.frames));
+    return Status(ErrorCode::kInsufficient, "no frame has a depth: " + ReasonOf(summary.frames) +
+                                                (images.AreOfOtherImages() ? std::string("; ") + kOtherImages : ""));
   if (stopped) return summary;
   summary.stopped = false;
   if (options.mesh_columns > 0) {
