@@ -5,11 +5,11 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 
 #include "pliant/image/corners.h"
-#include "pliant/image/pyramid.h"
 
 namespace pliant {
 namespace {
@@ -18,26 +18,52 @@ constexpr double kDarkOffset = 8;      // gray levels added before the logarithm
 constexpr double kMinLogStep = 0.15;   // brightness ratio (natural logarithm) of a step that is no contour yet
 constexpr double kWithinWeight = 2.0;  // what lies within a side weighs this much against the step
 
-double Clamped(const cv::Mat& image, const Eigen::Vector2d& p) {
-  return *SampleBilinear(image, std::clamp(p.x(), 0.0, image.cols - 1.0), std::clamp(p.y(), 0.0, image.rows - 1.0));
+// Natural logarithms of the 256 gray levels.
+std::array<float, 256> LogLevels() {
+  std::array<float, 256> logs;
+  for (std::size_t level = 0; level < logs.size(); ++level)
+    logs[level] = static_cast<float>(std::log(static_cast<double>(level) + kDarkOffset));
+  return logs;
 }
 
 }  // namespace
 
-ContourMeasure::ContourMeasure(const cv::Mat& gray, int radius_px) : step_px_(std::max(1, radius_px / 2)) {
+ContourMeasure::ContourMeasure(const cv::Mat& gray, int radius_px) : gray_(gray), step_px_(std::max(1, radius_px / 2)) {
   assert(gray.type() == CV_8UC1 && radius_px >= 2);
-  cv::Mat log_gray;
-  gray.convertTo(log_gray, CV_32F, 1, kDarkOffset);
-  cv::log(log_gray, log_gray);
-  // Odd; the two sides' windows, at +-step, leave a gap of about a step between them.
-  const int side_px = static_cast<int>(step_px_) | 1;
-  const cv::Size box(side_px, side_px);
-  cv::boxFilter(log_gray, mean_, CV_32F, box, cv::Point(-1, -1), true, cv::BORDER_REPLICATE);
-  cv::boxFilter(log_gray.mul(log_gray), mean_square_, CV_32F, box, cv::Point(-1, -1), true, cv::BORDER_REPLICATE);
+}
+
+// The window has 2 * half + 1 pixels a side, and its center lies between pixels: one row and one column more, of which
+// the outer ones count in part.
+ContourMeasure::Moments ContourMeasure::Around(const Eigen::Vector2d& pixel) const {
+  static const std::array<float, 256> kLogs = LogLevels();
+  const int half = step_px_ / 2;  // the two sides' windows, at +-step, leave a gap of about a step between them
+  const double x = std::clamp(pixel.x(), 0.0, gray_.cols - 1.0);
+  const double y = std::clamp(pixel.y(), 0.0, gray_.rows - 1.0);
+  const int left = static_cast<int>(x) - half;
+  const int top = static_cast<int>(y) - half;
+  const int side = 2 * half + 1;
+  const auto share = [&](int k, double fraction) { return k == 0 ? 1 - fraction : k == side ? fraction : 1.0; };
+  Moments sums;
+  for (int i = 0; i <= side; ++i) {
+    const auto* row = gray_.ptr<std::uint8_t>(std::clamp(top + i, 0, gray_.rows - 1));
+    double sum = 0;
+    double sum_of_squares = 0;
+    for (int k = 0; k <= side; ++k) {
+      const double value = kLogs[row[std::clamp(left + k, 0, gray_.cols - 1)]];
+      const double weighted = share(k, x - static_cast<int>(x)) * value;
+      sum += weighted;
+      sum_of_squares += weighted * value;
+    }
+    const double of_row = share(i, y - static_cast<int>(y));
+    sums.mean += of_row * sum;
+    sums.mean_square += of_row * sum_of_squares;
+  }
+  const double area = 1.0 * side * side;
+  return {sums.mean / area, sums.mean_square / area};
 }
 
 double ContourMeasure::At(const Eigen::Vector2d& pixel) const {
-  const auto mean_at = [&](const Eigen::Vector2d& offset) { return Clamped(mean_, pixel + offset); };
+  const auto mean_at = [&](const Eigen::Vector2d& offset) { return Around(pixel + offset).mean; };
   const double step = step_px_;
   const Eigen::Vector2d gradient(mean_at({step, 0}) - mean_at({-step, 0}), mean_at({0, step}) - mean_at({0, -step}));
   const double length = gradient.norm();
@@ -46,12 +72,10 @@ double ContourMeasure::At(const Eigen::Vector2d& pixel) const {
   double within = 0;
   std::array<double, 2> side{};
   for (const int sign : {-1, 1}) {
-    const Eigen::Vector2d inner = sign * step * across;
-    const double mean_inner = mean_at(inner);
-    const double slope = mean_at(sign * 2.0 * step * across) - mean_inner;
-    const double variance = Clamped(mean_square_, pixel + inner) - mean_inner * mean_inner;
-    side[sign < 0 ? 0 : 1] = mean_inner;
-    within += std::max(0.0, variance) + slope * slope;
+    const Moments inner = Around(pixel + sign * step * across);
+    const double slope = mean_at(sign * 2.0 * step * across) - inner.mean;
+    side[sign < 0 ? 0 : 1] = inner.mean;
+    within += std::max(0.0, inner.mean_square - inner.mean * inner.mean) + slope * slope;
   }
   const double between = (side[1] - side[0]) * (side[1] - side[0]);
   return between / (between + kWithinWeight * within + kMinLogStep * kMinLogStep);

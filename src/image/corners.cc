@@ -28,27 +28,40 @@ double ParabolaPeak(double left, double center, double right) {
   return curvature < 0 ? std::clamp(0.5 * (left - right) / curvature, -0.5, 0.5) : 0;
 }
 
-// Local maxima of the corner response on usable pixels, by row, then column.
-std::vector<Corner> Candidates(const cv::Mat& gray, const cv::Mat& valid, const CornerOptions& options) {
+// Rows of an image of which the response is computed at a time: its temporaries stay in the cache.
+constexpr int kStripRows = 64;
+
+// Adds the local maxima of the corner response in the rows [begin, end), without the image's first and last one.
+void AddCandidates(const cv::Mat& gray, const cv::Mat& usable, int begin, int end, int block_size_px,
+                   std::vector<Corner>* corners) {
+  // A maximum is compared with its neighbors, whose windows of gradients reach beyond the strip.
+  const int margin = block_size_px / 2 + 2;
+  const int top = std::max(0, begin - margin);
   cv::Mat response, peaks;
-  cv::cornerMinEigenVal(gray, response, options.block_size_px, 3);
+  cv::cornerMinEigenVal(gray.rowRange(top, std::min(gray.rows, end + margin)), response, block_size_px, 3);
   cv::dilate(response, peaks, cv::Mat());
-  const cv::Mat usable = ErodeMask(valid, options.border_px);
-  std::vector<Corner> corners;
-  for (int y = 1; y + 1 < gray.rows; ++y) {
-    const auto* row = response.ptr<float>(y);
-    const auto* above = response.ptr<float>(y - 1);
-    const auto* below = response.ptr<float>(y + 1);
-    const auto* peak = peaks.ptr<float>(y);
+  for (int y = begin; y < end; ++y) {
+    const auto* row = response.ptr<float>(y - top);
+    const auto* above = response.ptr<float>(y - top - 1);
+    const auto* below = response.ptr<float>(y - top + 1);
+    const auto* peak = peaks.ptr<float>(y - top);
     const auto* use = usable.ptr<std::uint8_t>(y);
     for (int x = 1; x + 1 < gray.cols; ++x) {
       if (use[x] == 0 || row[x] < peak[x] || row[x] <= 0) continue;
       Corner corner;
       corner.pixel = {x + ParabolaPeak(row[x - 1], row[x], row[x + 1]), y + ParabolaPeak(above[x], row[x], below[x])};
       corner.score = row[x] * kTensorScale;
-      corners.push_back(corner);
+      corners->push_back(corner);
     }
   }
+}
+
+// Local maxima of the corner response on usable pixels, by row, then column.
+std::vector<Corner> Candidates(const cv::Mat& gray, const cv::Mat& valid, const CornerOptions& options) {
+  const cv::Mat usable = ErodeMask(valid, options.border_px);
+  std::vector<Corner> corners;
+  for (int begin = 1; begin + 1 < gray.rows; begin += kStripRows)
+    AddCandidates(gray, usable, begin, std::min(begin + kStripRows, gray.rows - 1), options.block_size_px, &corners);
   return corners;
 }
 

@@ -62,8 +62,14 @@ class ContourMeasure {
   double At(const Eigen::Vector2d& pixel) const;
 
  private:
-  double step_px_;
-  cv::Mat mean_, mean_square_;  // CV_32FC1, of the logarithms around each pixel
+  struct Moments {
+    double mean = 0, mean_square = 0;
+  };
+  // Of the logarithms in a square window around a pixel.
+  Moments Around(const Eigen::Vector2d& pixel) const;
+
+  cv::Mat gray_;
+  int step_px_;
 };
 
 }  // namespace pliant
