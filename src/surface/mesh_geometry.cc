@@ -47,14 +47,26 @@ std::vector<Eigen::Vector3f> VertexNormals(std::span<const Eigen::Vector3f> vert
     for (const std::int32_t v : triangle) normals[static_cast<std::size_t>(v)] += normal;
   }
   for (Eigen::Vector3f& normal : normals) normal.normalize();
+  for (const Triangle& triangle : triangles)
+    for (const std::int32_t v : triangle) {
+      Eigen::Vector3f& normal = normals[static_cast<std::size_t>(v)];
+      if (normal.squaredNorm() > 0.5F) continue;
+      const Edges edges = EdgesOf(vertices, triangle);
+      normal = edges.first.cross(edges.second).normalized();
+      if (!(normal.squaredNorm() > 0.5F)) normal = Eigen::Vector3f::UnitZ();
+    }
   return normals;
 }
 
 Mesh PartOfMesh(const Mesh& mesh, const std::vector<bool>& keep) {
+  std::vector<bool> is_used(mesh.vertices.size(), false);
+  for (const Triangle& triangle : mesh.triangles)
+    if (std::ranges::all_of(triangle, [&](std::int32_t v) { return keep[static_cast<std::size_t>(v)]; }))
+      for (const std::int32_t v : triangle) is_used[static_cast<std::size_t>(v)] = true;
   Mesh part;
   std::vector<std::int32_t> becomes(mesh.vertices.size(), kGone);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (!keep[v]) continue;
+    if (!is_used[v]) continue;
     becomes[v] = static_cast<std::int32_t>(part.vertices.size());
     part.vertices.push_back(mesh.vertices[v]);
     if (!mesh.normals.empty()) part.normals.push_back(mesh.normals[v]);
@@ -65,7 +77,8 @@ Mesh PartOfMesh(const Mesh& mesh, const std::vector<bool>& keep) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     Triangle moved{};
     for (std::size_t k = 0; k < 3; ++k) moved[k] = becomes[static_cast<std::size_t>(mesh.triangles[t][k])];
-    if (std::ranges::find(moved, kGone) != moved.end()) continue;
+    if (std::ranges::any_of(mesh.triangles[t], [&](std::int32_t v) { return !keep[static_cast<std::size_t>(v)]; }))
+      continue;
     part.triangles.push_back(moved);
     if (!mesh.texture_uvs.empty()) part.texture_uvs.push_back(mesh.texture_uvs[t]);
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -16,6 +17,7 @@
 #include "pliant/surface/mesh_geometry.h"
 #include "pliant/surface/placed_mesh.h"
 #include "surface/depth_holes.h"
+#include "surface/mesh_seam.h"
 #include "surface/rest_motion.h"
 
 namespace pliant {
@@ -24,6 +26,7 @@ namespace {
 constexpr double kMinKnown = 0.5;  // of the pixels around a node
 constexpr int kMinPiece = 20;      // triangles of a connected piece
 constexpr std::int32_t kNoVertex = -1;
+constexpr std::int32_t kInside = -2;  // the mesh is there, and does not end
 
 // Whether the distances of a triangle's corners are those of one surface.
 bool IsOneSurface(std::span<const Eigen::Vector3d> in_cam, const Triangle& triangle, double largest_step) {
@@ -33,10 +36,18 @@ bool IsOneSurface(std::span<const Eigen::Vector3d> in_cam, const Triangle& trian
 }
 
 struct Votes {
-  double weight = 0;  // of a vertex's position along the rays: the sum of inverse variances
+  // Of a vertex's position along the rays: the sums of inverse variances, and of inverse standard deviations.
+  double weight = 0;
+  double root_weight = 0;
   int confirmed = 1;
   int contradicted = 0;
 
+  void Add(double sigma) {
+    weight += 1.0 / (sigma * sigma);
+    root_weight += 1.0 / sigma;
+  }
+  // Of the weighted mean of depths that are all wrong alike, since they rest on the same points.
+  float Sigma() const { return static_cast<float>(root_weight / weight); }
   bool IsGood() const { return contradicted <= confirmed; }
 };
 
@@ -93,9 +104,21 @@ std::vector<bool> InLargePieces(const Mesh& mesh, int least) {
   return in_large;
 }
 
+// Vertices that were bad when triangles were added beside them, and are good again, may have two sheets of triangles:
+// the later ones go.
+void DropSecondSheets(std::vector<Triangle>* triangles) {
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  std::erase_if(*triangles, [&](const Triangle& triangle) {
+    const auto edge = [&](std::size_t k) { return std::pair(triangle[k], triangle[(k + 1) % 3]); };
+    if (edges.contains(edge(0)) || edges.contains(edge(1)) || edges.contains(edge(2))) return true;
+    edges.insert({edge(0), edge(1), edge(2)});
+    return false;
+  });
+}
+
 // The vertices that a frame has at the nodes of its grid, and which of them are new.
 struct Grid {
-  std::vector<std::int32_t> vertex;  // row by row; kNoVertex: no surface there, or one that is hidden
+  std::vector<std::int32_t> vertex;  // row by row; kNoVertex: no surface there, or one that is hidden; kInside
   std::vector<bool> is_new;
   std::vector<Measured> measured;
 };
@@ -114,11 +137,19 @@ struct TrackedMesh::State {
   std::vector<Eigen::Vector3d> Moved(const RestMotion& motion) const;
   PlacedMesh Place(const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions) const;
   void Confirm(const SurfaceView& view, const DenseDepth& dense, const PlacedMesh& placed, double motion_error);
-  std::int32_t VertexAt(const PlacedMesh& placed, int column, int row, const Measured& measured,
+  std::int32_t VertexAt(const PlacedMesh& placed, const MeshSeam& seam, int column, int row, const Measured& measured,
                         double motion_error) const;
-  Grid Compare(const DenseDepth& dense, const PlacedMesh& placed, double motion_error) const;
+  Grid Compare(const DenseDepth& dense, const PlacedMesh& placed, const MeshSeam& seam, double motion_error) const;
   void AddVertices(const SurfaceView& view, const RestMotion& motion, Grid* grid, PlacedMesh* placed);
-  void AddTriangles(const Grid& grid, const PlacedMesh& placed);
+  void AddTriangles(const Grid& grid, const PlacedMesh& placed, MeshSeam* seam);
+
+  // What is wrong, as far as is known, hides nothing.
+  std::vector<bool> GoodVertices() const {
+    std::vector<bool> good;
+    for (const Votes& vote : votes) good.push_back(vote.IsGood());
+    return good;
+  }
+  double LargestStep() const { return step_px * LargestStepOfASurface(camera.MeanFocalLengthPx()); }
 
   Eigen::Vector2d PixelOf(int column, int row) const { return {column * step_px, row * step_px}; }
   std::size_t NodeIndex(int column, int row) const {
@@ -139,10 +170,7 @@ std::vector<Eigen::Vector3d> TrackedMesh::State::Moved(const RestMotion& motion)
 PlacedMesh TrackedMesh::State::Place(const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions) const {
   std::vector<Eigen::Vector3d> in_cam;
   for (const Eigen::Vector3d& position : positions) in_cam.push_back(cam_from_world * position);
-  // What is wrong, as far as is known, hides nothing.
-  std::vector<bool> hides;
-  for (const Votes& vote : votes) hides.push_back(vote.IsGood());
-  return PlaceMesh(camera, std::move(in_cam), mesh.triangles, hides, step_px);
+  return PlaceMesh(camera, std::move(in_cam), mesh.triangles, GoodVertices(), step_px);
 }
 
 // (V11) Depths of vertices that are there already.
@@ -159,42 +187,51 @@ void TrackedMesh::State::Confirm(const SurfaceView& view, const DenseDepth& dens
     if (difference > tolerance) ++votes[v].contradicted;
     if (std::abs(difference) > tolerance || placed.IsHidden(mesh.triangles, v, tolerance)) continue;
     ++votes[v].confirmed;
-    const double weight = 1.0 / (own * own);
-    votes[v].weight += weight;
+    votes[v].Add(own);
     const Eigen::Vector3d along = placed.in_cam[v] * (difference / placed.depths[v]);
-    mesh.vertices[v] += (world_from_cam * along * (weight / votes[v].weight)).cast<float>();
-    mesh.sigmas[v] = std::min(mesh.sigmas[v], static_cast<float>(own));
+    mesh.vertices[v] += (world_from_cam * along / (own * own * votes[v].weight)).cast<float>();
+    mesh.sigmas[v] = votes[v].Sigma();
   }
 }
 
-// The vertex that a node's depth belongs to, nearest in the image; kNoVertex: it shows a surface that is not there yet.
-std::int32_t TrackedMesh::State::VertexAt(const PlacedMesh& placed, int column, int row, const Measured& measured,
-                                          double motion_error) const {
+// The vertex of the mesh's border that a node's depth belongs to, nearest in the image; kNoVertex: it shows a surface
+// that is not there yet.
+std::int32_t TrackedMesh::State::VertexAt(const PlacedMesh& placed, const MeshSeam& seam, int column, int row,
+                                          const Measured& measured, double motion_error) const {
+  const auto tolerance_at = [&](std::int32_t v) {
+    const Eigen::Vector3d& in_cam = placed.in_cam[static_cast<std::size_t>(v)];
+    return DepthTolerance(in_cam, measured.SigmaOf(in_cam, motion_error), mesh.sigmas[static_cast<std::size_t>(v)]);
+  };
+  const auto distance_px = [&](std::int32_t v) {
+    return (*placed.pixels[static_cast<std::size_t>(v)] - PixelOf(column, row)).norm();
+  };
   const std::int32_t t = placed.raster.triangle.at<std::int32_t>(row, column);
-  if (t == kNoTriangle) return kNoVertex;
-  std::int32_t nearest = kNoVertex;
-  double least = 0.0;
-  for (const std::int32_t v : mesh.triangles[static_cast<std::size_t>(t)]) {
-    const double distance = (*placed.pixels[static_cast<std::size_t>(v)] - PixelOf(column, row)).norm();
-    if (nearest == kNoVertex || distance < least) {
-      nearest = v;
-      least = distance;
-    }
+  const bool is_covered = t != kNoTriangle;
+  if (is_covered) {
+    const std::int32_t nearest = std::ranges::min(mesh.triangles[static_cast<std::size_t>(t)], {}, distance_px);
+    if (placed.raster.depth.at<float>(row, column) - measured.depth > tolerance_at(nearest)) return kNoVertex;
   }
-  const Eigen::Vector3d& in_cam = placed.in_cam[static_cast<std::size_t>(nearest)];
-  const double tolerance =
-      DepthTolerance(in_cam, measured.SigmaOf(in_cam, motion_error), mesh.sigmas[static_cast<std::size_t>(nearest)]);
-  const double before = placed.raster.depth.at<float>(row, column) - measured.depth;
-  return before > tolerance ? kNoVertex : nearest;
+  std::int32_t vertex = is_covered ? kInside : kNoVertex;
+  double least = 0.0;
+  for (const std::int32_t v : seam.BorderAround(column, row, is_covered ? 1 : 0)) {
+    if (std::abs(placed.depths[static_cast<std::size_t>(v)] - measured.depth) >
+        std::max(tolerance_at(v), LargestStep() * measured.depth))
+      continue;
+    if (vertex >= 0 && distance_px(v) >= least) continue;
+    vertex = v;
+    least = distance_px(v);
+  }
+  return vertex;
 }
 
-Grid TrackedMesh::State::Compare(const DenseDepth& dense, const PlacedMesh& placed, double motion_error) const {
+Grid TrackedMesh::State::Compare(const DenseDepth& dense, const PlacedMesh& placed, const MeshSeam& seam,
+                                 double motion_error) const {
   Grid grid;
   for (int row = 0; row < nodes.height; ++row)
     for (int column = 0; column < nodes.width; ++column) {
       const Measured measured = MeasuredAround(dense, PixelOf(column, row), step_px);
       const std::int32_t vertex =
-          measured.depth > 0.0 ? VertexAt(placed, column, row, measured, motion_error) : kNoVertex;
+          measured.depth > 0.0 ? VertexAt(placed, seam, column, row, measured, motion_error) : kNoVertex;
       grid.vertex.push_back(vertex);
       grid.is_new.push_back(measured.depth > 0.0 && vertex == kNoVertex);
       grid.measured.push_back(measured);
@@ -220,28 +257,29 @@ void TrackedMesh::State::AddVertices(const SurfaceView& view, const RestMotion& 
       const Eigen::Vector3d in_cam = *ray * (measured.depth / ray->z());
       grid->vertex[node] = static_cast<std::int32_t>(placed->in_cam.size());
       placed->in_cam.push_back(in_cam);
+      placed->pixels.emplace_back(pixel);
+      placed->depths.push_back(measured.depth);
       positions.push_back(world_from_cam * in_cam);
       mesh.rgb.push_back(ColorAt(view.image, pixel));
       const double sigma = measured.SigmaOf(in_cam, motion.error());
       mesh.sigmas.push_back(static_cast<float>(sigma));
-      votes.push_back({.weight = 1.0 / (sigma * sigma)});
+      votes.emplace_back();
+      votes.back().Add(sigma);
     }
   for (const Eigen::Vector3d& position : motion.Undeformed(positions, threads))
     mesh.vertices.push_back(position.cast<float>());
 }
 
-void TrackedMesh::State::AddTriangles(const Grid& grid, const PlacedMesh& placed) {
-  const double largest_step = step_px * LargestStepOfASurface(camera.MeanFocalLengthPx());
+void TrackedMesh::State::AddTriangles(const Grid& grid, const PlacedMesh& placed, MeshSeam* seam) {
   const auto add = [&](std::array<std::size_t, 3> corners) {
     Triangle triangle{};
-    bool is_new = false;
     for (std::size_t k = 0; k < 3; ++k) {
       triangle[k] = grid.vertex[corners[k]];
-      if (triangle[k] == kNoVertex) return;
-      is_new = is_new || grid.is_new[corners[k]];
+      if (triangle[k] < 0) return;
     }
-    if (!is_new || triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) return;
-    if (IsOneSurface(placed.in_cam, triangle, largest_step)) mesh.triangles.push_back(triangle);
+    if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) return;
+    if (IsOneSurface(placed.in_cam, triangle, LargestStep()) && seam->Take(triangle, placed))
+      mesh.triangles.push_back(triangle);
   };
   for (int row = 0; row + 1 < nodes.height; ++row)
     for (int column = 0; column + 1 < nodes.width; ++column) {
@@ -268,15 +306,15 @@ void TrackedMesh::Add(const SurfaceView& view, const DenseDepth& dense) {
   if (!motion) return;
   PlacedMesh placed = state_->Place(view.cam_from_world, state_->Moved(*motion));
   state_->Confirm(view, dense, placed, motion->error());
-  Grid grid = state_->Compare(dense, placed, motion->error());
+  MeshSeam seam(placed, state_->mesh.triangles, state_->GoodVertices(), state_->LargestStep());
+  Grid grid = state_->Compare(dense, placed, seam, motion->error());
   state_->AddVertices(view, *motion, &grid, &placed);
-  state_->AddTriangles(grid, placed);
+  state_->AddTriangles(grid, placed, &seam);
 }
 
 void TrackedMesh::Finish() {
-  std::vector<bool> keep;
-  for (const Votes& votes : state_->votes) keep.push_back(votes.IsGood());
-  state_->mesh = PartOfMesh(state_->mesh, keep);
+  state_->mesh = PartOfMesh(state_->mesh, state_->GoodVertices());
+  DropSecondSheets(&state_->mesh.triangles);
   state_->mesh = PartOfMesh(state_->mesh, InLargePieces(state_->mesh, kMinPiece));
   state_->votes.clear();
   state_->mesh.normals = VertexNormals(state_->mesh.vertices, state_->mesh.triangles);

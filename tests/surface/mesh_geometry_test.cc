@@ -23,6 +23,8 @@ TEST(MeshGeometry, NormalsAreThoseOfTheTrianglesByTheirArea) {
     EXPECT_TRUE(normal.isApprox(Eigen::Vector3f::UnitZ()));
   const std::vector<Eigen::Vector3f> alone = VertexNormals(Square(), {});
   EXPECT_EQ(alone[0], Eigen::Vector3f(Eigen::Vector3f::Zero()));
+  const std::vector<Triangle> back_to_back = {{0, 1, 2}, {2, 1, 0}};
+  EXPECT_TRUE(VertexNormals(Square(), back_to_back)[0].isApprox(Eigen::Vector3f::UnitZ()));
 }
 
 TEST(MeshGeometry, APartHasWhatIsKnownOfItsVertices) {
@@ -37,6 +39,7 @@ TEST(MeshGeometry, APartHasWhatIsKnownOfItsVertices) {
   EXPECT_EQ(part.rgb[0][0], 2);
   ASSERT_EQ(part.texture_uvs.size(), 1U);
   EXPECT_EQ(part.texture_uvs[0][0], Eigen::Vector2f(0.5F, 0.5F));
+  EXPECT_TRUE(PartOfMesh(mesh, {true, true, false, true}).vertices.empty());  // no triangle has them
 }
 
 TEST(MeshGeometry, StretchesAreThoseOfAnAffineMotion) {

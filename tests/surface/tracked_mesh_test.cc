@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "pliant/base/statistics.h"
 #include "surface/textured_plane.h"
@@ -127,6 +131,54 @@ TEST(TrackedMesh, IsOnePieceThoughItIsOfTwoFrames) {
     }
   }
   EXPECT_EQ(std::ranges::count(piece, 0U), static_cast<std::ptrdiff_t>(piece.size()));
+}
+
+// Of the triangles in a view of the plane, by what they cover there together.
+double LayersOf(const TexturedPlane& plane, const Mesh& mesh) {
+  constexpr int kFine = 4;
+  constexpr int kMargin = 100;
+  cv::Mat covered(kFine * (TexturedPlane::kHeight + 2 * kMargin), kFine * (TexturedPlane::kWidth + 2 * kMargin), CV_8U,
+                  cv::Scalar(0));
+  double area = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    std::vector<cv::Point2f> corners;
+    for (const std::int32_t v : triangle) {
+      const auto pixel = plane.camera.Project(mesh.vertices[static_cast<std::size_t>(v)].cast<double>());
+      corners.emplace_back(static_cast<float>(kFine * (pixel->x() + kMargin)),
+                           static_cast<float>(kFine * (pixel->y() + kMargin)));
+    }
+    area += std::abs(cv::contourArea(corners));
+    std::vector<cv::Point> fixed;  // 1/16 of a pixel
+    for (const cv::Point2f& corner : corners) fixed.emplace_back(cvRound(16 * corner.x), cvRound(16 * corner.y));
+    cv::fillConvexPoly(covered, fixed, cv::Scalar(255), cv::LINE_8, 4);
+  }
+  return area / cv::countNonZero(covered);
+}
+
+TEST(TrackedMesh, IsOneLayerThoughItIsOfManyFrames) {
+  TexturedPlane plane;
+  const TrackedMesh tracked = MeshOf(plane, {0, 1, 2, 1, 0, 2});
+  const Mesh& mesh = tracked.undeformed();
+  EXPECT_LT(LayersOf(plane, mesh), 1.02);
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  for (const Triangle& triangle : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(edges.insert({triangle[k], triangle[(k + 1) % 3]}).second);
+}
+
+TEST(TrackedMesh, SigmaIsThatOfTheMeanOfDepthsThatAreWrongAlike) {
+  TexturedPlane plane;
+  plane.slide_mm = 0;
+  TrackedMesh tracked(plane.camera, RestOf(plane), kColumns, 1);
+  DenseDepth worse = TrueDepth(plane, 0);
+  worse.sigma *= 2.0;
+  tracked.Add(plane.View(0), TrueDepth(plane, 0));
+  tracked.Add(plane.View(0), worse);
+  tracked.Finish();
+  const Mesh& mesh = tracked.undeformed();
+  ASSERT_FALSE(mesh.vertices.empty());
+  // By weights of 1 and 1/4.
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    EXPECT_NEAR(mesh.sigmas[v], 1.2 * kMeshSigma * mesh.vertices[v].norm(), 2e-2);
 }
 
 TEST(TrackedMesh, WhatMoreFramesContradictThanConfirmGoes) {

@@ -17,11 +17,12 @@ namespace pliant {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// Of unit length: the mean of the triangles' around a vertex, by their area; zero for a vertex of no triangle.
+// Of unit length: the mean of the triangles' around a vertex, by their area; where these cancel each other, that of one
+// of them (the z axis where it has no area); zero for a vertex of no triangle.
 std::vector<Eigen::Vector3f> VertexNormals(std::span<const Eigen::Vector3f> vertices,
                                            std::span<const Triangle> triangles);
 
-// The vertices with `keep` (one entry a vertex), with all that is known of them, and the triangles that have no others.
+// The triangles whose vertices all have `keep` (one entry a vertex), and these vertices with all that is known of them.
 Mesh PartOfMesh(const Mesh& mesh, const std::vector<bool>& keep);
 
 // How a triangle is deformed in its plane.
