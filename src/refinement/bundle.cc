@@ -83,14 +83,15 @@ std::vector<Eigen::Vector2d> ReprojectionErrors(const Camera& camera, const Reco
 }
 
 std::vector<double> MeasuredDistanceErrors(const Recording& recording, const std::vector<bool>& used,
-                                           const BundleState& state) {
+                                           const BundleState& state, double median_distance) {
   std::vector<double> errors;
   for (std::size_t o = 0; o < used.size(); ++o) {
     const RecordedObservation& seen = recording.observations[o];
     if (!used[o] || seen.view_idx != recording.measured_view_idx) continue;
     const auto view = static_cast<std::size_t>(seen.view_idx);
-    errors.push_back(std::log((state.cams_from_world[view] * state.Position(seen.point_idx, seen.view_idx)).norm() /
-                              (recording.cams_from_world[view] * seen.position).norm()));
+    const double measured = (recording.cams_from_world[view] * seen.position).norm();
+    const double now = (state.cams_from_world[view] * state.Position(seen.point_idx, seen.view_idx)).norm();
+    errors.push_back(std::log(now / measured) * median_distance / measured);
   }
   return errors;
 }

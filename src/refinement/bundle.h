@@ -40,16 +40,18 @@ struct BundleGraph {
 // Standard deviations of the terms (F2 to F7).
 struct BundleSigmas {
   double noise_px = 1;
-  double gradient = 0.3;                // of the difference of neighbors' basis shapes, by their distance
-  double size = 0.2;                    // of a node's basis shape, by the median distance
-  double acceleration = 0.02;           // of a temporal coefficient, 1/frame^2
-  double log_distance = 0.2;            // of a point, from the start's
-  double measured_log_distance = 0.01;  // the same in the view in which distances were measured
+  double gradient = 0.3;       // of the difference of neighbors' basis shapes, by their distance
+  double size = 0.2;           // of a node's basis shape, by the median distance
+  double acceleration = 0.02;  // of a temporal coefficient, 1/frame^2
+  double log_distance = 0.2;   // of a point, from the start's
+  // The same in the view in which distances were measured, at the median distance; in proportion to it elsewhere.
+  double measured_log_distance = 0.01;
 };
 
-// (F7) Logarithms of the distances in the view in which they were measured by the measured ones, a used point each.
+// (F7) Logarithms of the distances in the view in which they were measured by the measured ones, a used point each, by
+// the measured distance over the median one.
 std::vector<double> MeasuredDistanceErrors(const Recording& recording, const std::vector<bool>& used,
-                                           const BundleState& state);
+                                           const BundleState& state, double median_distance);
 
 // Of Cauchy's loss, in standard deviations of an error.
 inline constexpr double kBundleLossScale = 2.0;

@@ -200,8 +200,9 @@ void BundleProblem::AddDistances() {
     is_measured[point] = true;
     if (!is_point_in_problem_[point]) continue;
     const double distance = (input_.recording.cams_from_world[view] * seen.position).norm();
-    problem_->AddResidualBlock(NewDistanceCost(poses_[view], distance, input_.sigmas.measured_log_distance, rank_),
-                               nullptr, views_[view], points_[point]);
+    const double sigma = input_.sigmas.measured_log_distance * distance / input_.distance;
+    problem_->AddResidualBlock(NewDistanceCost(poses_[view], distance, sigma, rank_), nullptr, views_[view],
+                               points_[point]);
   }
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!is_point_in_problem_[i] || is_measured[i]) continue;

@@ -195,7 +195,7 @@ class Refinement {
     const auto errors_px = ReprojectionErrors(input_.camera, start_, state);
     input_.sigmas.noise_px = NoisePx(errors_px, used);
     refined_.noise_px = input_.sigmas.noise_px;
-    if (const auto errors = MeasuredDistanceErrors(start_, used, state); !errors.empty())
+    if (const auto errors = MeasuredDistanceErrors(start_, used, state, input_.distance); !errors.empty())
       input_.sigmas.measured_log_distance = std::clamp(Sigma(errors), kMinMeasuredSigma, kMaxMeasuredSigma);
     if (state.rank() == 0) return;
     const ShapeSizes sizes = SizesOf(state.nodes);

@@ -175,10 +175,16 @@ TEST(TrackedMesh, SigmaIsThatOfTheMeanOfDepthsThatAreWrongAlike) {
   tracked.Add(plane.View(0), worse);
   tracked.Finish();
   const Mesh& mesh = tracked.undeformed();
-  ASSERT_FALSE(mesh.vertices.empty());
-  // By weights of 1 and 1/4.
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    EXPECT_NEAR(mesh.sigmas[v], 1.2 * kMeshSigma * mesh.vertices[v].norm(), 2e-2);
+  int inside = 0;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    // Rounding may put those at the image's border outside.
+    const Eigen::Vector2d pixel = *plane.camera.Project(mesh.vertices[v].cast<double>());
+    if (pixel.minCoeff() < 1 || pixel.x() > TexturedPlane::kWidth - 2 || pixel.y() > TexturedPlane::kHeight - 2)
+      continue;
+    ++inside;
+    EXPECT_NEAR(mesh.sigmas[v], 1.2 * kMeshSigma * mesh.vertices[v].norm(), 2e-2);  // by weights of 1 and 1/4
+  }
+  EXPECT_GT(inside, 4000);
 }
 
 TEST(TrackedMesh, WhatMoreFramesContradictThanConfirmGoes) {
