@@ -247,15 +247,21 @@ MeshPainter::MeshPainter(const View& view, SurfaceColor color) : view_(view), co
   scale_ = ScaleOf(color, range_, view.in_millimeters);
 }
 
-std::optional<MeshPicture> MeshPainter::Paint(std::size_t run_index, int frame_idx, const Orbit& orbit,
-                                              const Panel& panel) const {
+const ViewedMesh* MeshPainter::Find(std::size_t run_index, int frame_idx) const {
   const ViewedRun& run = view_.runs[run_index];
   const ViewedFrame* frame = FindFrame(run, frame_idx);
-  if (frame == nullptr) return std::nullopt;
-  const auto mesh = std::ranges::find_if(
-      run.meshes, [&](const ViewedMesh& candidate) { return candidate.surface.submap == frame->row.submap; });
-  if (mesh == run.meshes.end()) return std::nullopt;
-  const Prepared& prepared = prepared_[run_index][static_cast<std::size_t>(mesh - run.meshes.begin())];
+  if (frame == nullptr) return nullptr;
+  const auto mesh = std::ranges::find_if(run.meshes, [&](const ViewedMesh& candidate) {
+    return candidate.surface.submap == frame->row.submap && IsKnownIn(candidate.surface, frame_idx);
+  });
+  return mesh == run.meshes.end() ? nullptr : &*mesh;
+}
+
+std::optional<MeshPicture> MeshPainter::Paint(std::size_t run_index, int frame_idx, const Orbit& orbit,
+                                              const Panel& panel) const {
+  const ViewedMesh* mesh = Find(run_index, frame_idx);
+  if (mesh == nullptr) return std::nullopt;
+  const Prepared& prepared = prepared_[run_index][static_cast<std::size_t>(mesh - view_.runs[run_index].meshes.data())];
   const std::vector<Triangle>& seamless = prepared.seamless;
   const SeenMesh seen = SeeMesh(PositionsAt(mesh->surface, frame_idx), seamless, orbit);
   const cv::Size size(static_cast<int>(std::lround(kPictureScale * panel.width)),

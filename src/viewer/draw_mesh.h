@@ -38,7 +38,10 @@ class MeshPainter {
  public:
   MeshPainter(const View& view, SurfaceColor color);
 
-  // Of the run's mesh in a frame, where it has one of the frame's submap.
+  // Whether the run has a mesh of the frame's submap that is known in the frame.
+  bool Has(std::size_t run, int frame_idx) const { return Find(run, frame_idx) != nullptr; }
+
+  // Nothing where the run has no mesh in the frame.
   std::optional<MeshPicture> Paint(std::size_t run, int frame_idx, const Orbit& orbit, const Panel& panel) const;
 
   // Nothing where there is no mesh, or it has its own colors.
@@ -49,6 +52,9 @@ class MeshPainter {
     std::vector<cv::Mat> texture;  // CV_8UC3, each half as large as the one before; empty: none
     std::vector<Triangle> seamless;
   };
+
+  // Null where there is none.
+  const ViewedMesh* Find(std::size_t run, int frame_idx) const;
 
   const View& view_;
   SurfaceColor color_;

@@ -230,16 +230,20 @@ void SceneDrawer::Draw(cairo_t* drawing, const Panel& panel, std::size_t run_ind
   if (frame != nullptr && frame->world_from_cam && viewpoint.frustum)
     DrawFrustum(*frame->world_from_cam, *viewpoint.frustum, &scene);
   cairo_restore(drawing);
-  DrawParagraph(drawing, panel, WhyNoPose(run, frame_idx));
+  std::string missing = WhyNoPose(run, frame_idx);
+  if (missing.empty() && !mesh && !run.meshes.empty()) missing = "No surface in this frame.";
+  DrawParagraph(drawing, panel, missing);
   Use(drawing, kGray);
   cairo_set_line_width(drawing, 1);
   cairo_rectangle(drawing, panel.left, panel.top, panel.width, panel.height);
   cairo_stroke(drawing);
 }
 
-LegendContent SceneDrawer::Legend() const {
-  const auto has_mesh = [](const ViewedRun& run) { return !run.meshes.empty(); };
-  return {.map = !std::ranges::all_of(view_.runs, has_mesh),
+LegendContent SceneDrawer::Legend(const std::set<int>& frames_idx) const {
+  bool any_map = false;
+  for (std::size_t i = 0; i < view_.runs.size(); ++i)
+    any_map = any_map || !std::ranges::all_of(frames_idx, [&](int frame_idx) { return meshes_.Has(i, frame_idx); });
+  return {.map = any_map,
           .truth = HasTruth(view_),
           .unknown = meshes_.scale() && options_.surface_color == SurfaceColor::kError,
           .scale = meshes_.scale()};

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <Eigen/Core>
@@ -33,11 +34,12 @@ class SceneDrawer {
  public:
   SceneDrawer(const View& view, const FigureOptions& options, double width_px, double height_px);
 
-  // A frame without a pose says why.
+  // A frame without a pose says why. Where a run that has meshes has none in the frame, that is said, and its
+  // undeformed map is drawn, as that of a run without meshes.
   void Draw(cairo_t* drawing, const Panel& panel, std::size_t run, int frame_idx) const;
 
-  // What its colors mean.
-  LegendContent Legend() const;
+  // What the colors of these frames mean.
+  LegendContent Legend(const std::set<int>& frames_idx) const;
 
  private:
   const View& view_;

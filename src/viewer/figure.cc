@@ -70,7 +70,7 @@ Status Draw(cairo_t* drawing, const View& view, const SceneDrawer& scenes, const
     }
     left += layout.panel.width + kGap;
   }
-  DrawLegend(drawing, kGap, layout.height - layout.legend_height, layout.width - 2 * kGap, scenes.Legend());
+  DrawLegend(drawing, kGap, layout.height - layout.legend_height, layout.width - 2 * kGap, scenes.Legend(frames_idx));
   return Status::Ok();
 }
 
@@ -112,7 +112,7 @@ Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const F
   const std::set<int> columns(frames_idx.begin(), frames_idx.end());
   const PanelSize panel(*view, options);
   const SceneDrawer scenes(*view, options, panel.width, panel.height);
-  const Layout layout(*view, panel, scenes.Legend(), columns.size());
+  const Layout layout(*view, panel, scenes.Legend(columns), columns.size());
   const Status written = WritePicture(output_path, layout.width, layout.height,
                                       [&](cairo_t* drawing) { return Draw(drawing, *view, scenes, layout, columns); });
   if (!written.ok()) return written;

@@ -64,6 +64,7 @@ Status Unwritable(const std::string& path) {
 struct FilmLayout {
   const View& view;
   const SceneDrawer& scenes;
+  const LegendContent& legend;
   double panel_width = 0;
   double panel_height = 0;
 };
@@ -88,7 +89,7 @@ void DrawFilmFrame(const FilmLayout& layout, int frame_idx, const cv::Mat& image
     left += layout.panel_width;
   }
   DrawText(drawing.get(), kFilmMargin, kLine - 6, kNameLeft - kFilmMargin, "frame " + std::to_string(frame_idx));
-  DrawLegend(drawing.get(), kFilmMargin, kLine + layout.panel_height, left - 2 * kFilmMargin, layout.scenes.Legend());
+  DrawLegend(drawing.get(), kFilmMargin, kLine + layout.panel_height, left - 2 * kFilmMargin, layout.legend);
 }
 
 }  // namespace
@@ -110,7 +111,8 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
   const std::size_t panels = (view->sequence ? 1 : 0) + view->runs.size();
   const double width = static_cast<double>(panels) * panel_width;
   const SceneDrawer scenes(*view, options, panel_width, panel_height);
-  const double legend_height = LegendHeight(width - 2 * kFilmMargin, scenes.Legend());
+  const LegendContent legend = scenes.Legend(frames_idx);
+  const double legend_height = LegendHeight(width - 2 * kFilmMargin, legend);
   const cv::Size size(Even(width), Even(panel_height + kLine + legend_height));
   auto images = FrameImages::Open(*view, *frames_idx.begin());
   if (!images.ok()) return images.status();
@@ -133,7 +135,7 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
       if (!read.ok()) return unwritten(read.status());
       image = *read;
     }
-    DrawFilmFrame({*view, scenes, panel_width, panel_height}, frame_idx, image, surface.get());
+    DrawFilmFrame({*view, scenes, legend, panel_width, panel_height}, frame_idx, image, surface.get());
     cairo_surface_flush(surface.get());
     const cv::Mat bgra(size, CV_8UC4, cairo_image_surface_get_data(surface.get()),
                        static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())));

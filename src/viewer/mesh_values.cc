@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -78,7 +79,12 @@ std::vector<float> ErrorsAt(const ViewedMesh& mesh, int frame_idx) {
 
 }  // namespace
 
+bool IsKnownIn(const GltfMesh& mesh, int frame_idx) {
+  return mesh.keys.empty() || (mesh.keys.front().frame_idx <= frame_idx && frame_idx <= mesh.keys.back().frame_idx);
+}
+
 std::vector<Eigen::Vector3f> PositionsAt(const GltfMesh& mesh, int frame_idx) {
+  assert(IsKnownIn(mesh, frame_idx));
   if (mesh.keys.empty()) return mesh.mesh.vertices;
   const BetweenKeys around = KeysAround(mesh.keys, frame_idx);
   std::vector<Eigen::Vector3f> positions;

@@ -267,6 +267,42 @@ TEST_F(FigureTest, DrawsTheSurfaceInTheColorsOfItsValues) {
   EXPECT_EQ(CountPixels(behind(cv::Range(400, bottom), cv::Range(0, 488)), lowest), 0);
 }
 
+// The keys are the frames 10 and 14.
+TEST_F(FigureTest, ShowsNoSurfaceAfterItsLastKeyAndSaysSo) {
+  WriteSquare(folder_);
+  options_.panel_width_px = 480;
+  options_.surface_color = SurfaceColor::kDisplacement;
+  ViewRequest request = Request();
+  request.surface_paths = {folder_.Path("surface")};
+  const auto scene = [&](int frame_idx) {
+    EXPECT_TRUE(WriteFigure(request, options_, {frame_idx}, folder_.Path("figure.png")).ok());
+    return cv::Mat(cv::imread(folder_.Path("figure.png")), cv::Range(400, 740), cv::Range(12, 484));
+  };
+  const cv::Mat with = scene(12);
+  const cv::Mat without = scene(16);
+  const cv::Scalar lowest(84, 1, 68);
+  EXPECT_GT(CountPixels(with, lowest), kMinSurface / 4);
+  EXPECT_LT(CountPixels(without, lowest), kMinLine);
+  constexpr int kSentence = 16;  // rows
+  EXPECT_LT(CountPixels(with.rowRange(0, kSentence), {0, 0, 0}), kMinLine);
+  EXPECT_GT(CountPixels(without.rowRange(0, kSentence), {0, 0, 0}), kMinLine);
+}
+
+TEST(SceneDrawer, NamesTheMapWhereAFrameHasNoSurface) {
+  const auto camera = Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5});
+  View view;
+  view.runs.push_back(RunOf(*camera));
+  GltfMesh& surface = view.runs[0].meshes.emplace_back().surface;
+  surface.mesh.vertices = {{-2, -2, 50}, {2, -2, 50}, {2, 2, 50}};
+  surface.mesh.triangles = {{0, 2, 1}};
+  surface.keys = {{1, 0.0, surface.mesh.vertices}};
+  const FigureOptions options;
+  const SceneDrawer scenes(view, options, 480, 360);
+  EXPECT_FALSE(scenes.Legend({1}).map);
+  EXPECT_TRUE(scenes.Legend({0, 1}).map);
+  EXPECT_TRUE(scenes.Legend({1, 2}).map);
+}
+
 TEST_F(FigureTest, RefusesTheSurfaceOfARunThatWasReplaced) {
   WriteSquare(folder_);
   ViewRequest request = Request();

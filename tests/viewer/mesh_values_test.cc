@@ -35,10 +35,24 @@ ViewedMesh StretchedSquare() {
 
 TEST(MeshValues, BetweenKeysVerticesMoveEvenly) {
   const ViewedMesh mesh = StretchedSquare();
-  EXPECT_FLOAT_EQ(PositionsAt(mesh.surface, -3)[4].x(), 1);
+  EXPECT_FLOAT_EQ(PositionsAt(mesh.surface, 0)[4].x(), 1);
   EXPECT_FLOAT_EQ(PositionsAt(mesh.surface, 5)[4].x(), 1.5F);
   EXPECT_FLOAT_EQ(PositionsAt(mesh.surface, 10)[4].x(), 2);
-  EXPECT_FLOAT_EQ(PositionsAt(mesh.surface, 99)[4].x(), 2);
+}
+
+TEST(MeshValues, AMeshIsKnownFromItsFirstKeyToItsLast) {
+  GltfMesh surface = StretchedSquare().surface;
+  const auto known = [&] {
+    std::vector<int> frames_idx;
+    for (const int frame_idx : {-1, 0, 5, 10, 11})
+      if (IsKnownIn(surface, frame_idx)) frames_idx.push_back(frame_idx);
+    return frames_idx;
+  };
+  EXPECT_THAT(known(), ElementsAre(0, 5, 10));
+  surface.keys.erase(surface.keys.begin());
+  EXPECT_THAT(known(), ElementsAre(10));
+  surface.keys.clear();  // it does not move
+  EXPECT_THAT(known(), ElementsAre(-1, 0, 5, 10, 11));
 }
 
 TEST(MeshValues, SeamsAreSewn) {

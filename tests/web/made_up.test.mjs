@@ -207,12 +207,32 @@ testMadeUp("shows no surface where there is none", dataOf(runOf({ to: 5 })), asy
   assert.equal(await page.getByRole("button", { name: "surface", exact: true }).isVisible(), false);
 });
 
+for (const [keys, known] of [[2, [0, 9, 10]], [1, [10]], [0, [0, 9, 10, 11]]]) {
+  const made = dataOf({ ...runOf({ to: 20 }), meshes: [surfaceOf({ keys })] });
+  testMadeUp(`shows a surface of ${keys} keys from the first to the last, and says where there is none`, made, async (page) => {
+    const caption = () => page.locator("#scene-caption").textContent();
+    await press(page, "u");   // its texture would be white
+    for (const frame of [0, 9, 10, 11]) {
+      await goTo(page, frame);
+      await page.waitForTimeout(300);
+      const shown = await countPixels(page, "#scene", WHITE);
+      assert.equal(/no surface in this frame$/.test(await caption()), !known.includes(frame), `frame ${frame}`);
+      await press(page, "s");
+      await page.waitForTimeout(300);
+      assert.equal(await countPixels(page, "#scene", WHITE) > shown + 10000, known.includes(frame), `frame ${frame}`);
+      assert.doesNotMatch(await caption(), /surface/, "it is switched off");
+      await press(page, "s");
+    }
+  });
+}
+
 testMadeUp("shows the surface of the frame's own submap alone", dataOf({ ...runOf({ to: 5 }), meshes: [surfaceOf({ submap: 3 })] }), async (page) => {
   await page.waitForTimeout(300);
   const white = await countPixels(page, "#scene", WHITE);
+  assert.match(await page.locator("#scene-caption").textContent(), /no surface in this frame$/);
   await press(page, "s");
   await page.waitForTimeout(300);
-  assert.equal(await countPixels(page, "#scene", WHITE), white);
+  assert.ok(await countPixels(page, "#scene", WHITE) < white + 1000, "more has gone than the caption's words");
 });
 
 // Points 0 and 7 are the ends of the first row of the grid: 42 (1 + f / 100) from each other in frame f. Point 7 is not seen in frames

@@ -25,6 +25,7 @@ export class SceneContent {
   center = new Vector3();
   size = 1;
   empty = true;   // nothing has a position yet
+  lacksSurface = false;   // the current run's surface is to be shown, and is not known in this frame
   medianDepth = 1;
   gridStep = 1;
   private lowest = 0;   // the largest y
@@ -273,9 +274,14 @@ export class SceneContent {
   private showSurface(run: Run, row: number): void {
     const { report, store } = this.page;
     const { current, position, layers, visible, surfaceColor } = store.state;
+    const frame = report.frames[position];
+    const wanted = visible[current] && layers.surface;
+    this.lacksSurface = wanted && run.surfaces.length > 0;
     this.surfaces.forEach((meshes, index) => meshes.forEach(({ object, surface }, k) => {
-      object.visible = index === current && visible[index] && layers.surface && row >= 0 && run.frames.submap[row] === surface.submap;
-      if (object.visible) meshes[k].show(report.frames[position], surfaceColor);
+      object.visible = index === current && wanted && row >= 0 && run.frames.submap[row] === surface.submap && surface.isKnownIn(frame);
+      if (!object.visible) return;
+      this.lacksSurface = false;
+      meshes[k].show(frame, surfaceColor);
     }));
   }
 

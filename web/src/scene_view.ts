@@ -80,7 +80,9 @@ export class SceneView {
   private showTexts(): void {
     const { report, store } = this.page;
     setText(this.message, report.runs[store.state.current].whyNothing());
-    setText(byId("scene-caption"), store.state.layers.grid && !this.content.empty ? `grid ${Number(this.content.gridStep.toPrecision(1))} ${report.unit}` : "");
+    const grid = store.state.layers.grid && !this.content.empty ? `grid ${Number(this.content.gridStep.toPrecision(1))} ${report.unit}` : "";
+    const surface = this.content.lacksSurface ? "no surface in this frame" : "";
+    setText(byId("scene-caption"), [grid, surface].filter((text) => text !== "").join(", "));
   }
 
   // Shows the whole scene.

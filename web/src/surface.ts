@@ -41,7 +41,13 @@ export class Surface {
     return this.arrays.rest.length / 3;
   }
 
-  // Between two keys a vertex moves evenly; before the first and after the last it stays.
+  // Whether it is known where it is in the frame: from the first key to the last, and without keys in every frame.
+  isKnownIn(frame: number): boolean {
+    const { frames } = this;
+    return frames.length === 0 || (frames[0] <= frame && frame <= frames[frames.length - 1]);
+  }
+
+  // In a frame in which it is known. Between two keys a vertex moves evenly.
   positionsAt(frame: number): Float32Array {
     const { rest, displacements } = this.arrays;
     const positions = rest.slice();
