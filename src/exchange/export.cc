@@ -14,6 +14,7 @@
 #include "pliant/base/folder_lock.h"
 #include "pliant/base/staged_folder.h"
 #include "pliant/base/text.h"
+#include "pliant/io/run_writer.h"
 #include "pliant/io/trajectory.h"
 
 namespace pliant {
@@ -99,6 +100,12 @@ Status CheckNeeds(const ExportFormat& format, const ExportRequest& request) {
                                            " has no images"};
 }
 
+// A format's files would replace some of a run's, such as trajectory.txt, or stand between them.
+Status CheckOutput(const std::string& path) {
+  if (!HoldsRun(path)) return Status::Ok();
+  return {ErrorCode::kInvalidArgument, Quoted(path) + " holds a run; give another --output_path"};
+}
+
 }  // namespace
 
 std::span<const ExportFormat> ExportFormats() { return kFormats; }
@@ -157,6 +164,7 @@ Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOption
   const auto format = FindFormat(request.format);
   if (!format.ok()) return format.status();
   if (Status status = CheckNeeds(**format, request); !status.ok()) return status;
+  if (Status status = CheckOutput(request.output_path); !status.ok()) return status;
   auto sources = ReadRunSources(request, options.stride);
   if (!sources.ok()) return sources.status();
   for (RunSource& source : *sources) source.progress = progress;

@@ -359,6 +359,28 @@ kill -TERM $pid; cat out/cameras.bin >read; wait $pid
   EXPECT_TRUE(std::filesystem::is_empty(out));
 }
 
+// A figure that takes seconds; 0x4000 is SIGTERM among the signals that are caught.
+TEST(Program, AFigureStopsOnASignalAndLeavesTheOldOne) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 5" + kCoarse + "-o '" + sequence + "'").exit, 0);
+  ASSERT_EQ(Pliant("import --quiet --format tum --input_path '" + sequence + "/groundtruth.txt' --sequence '" +
+                   sequence + "' -o '" + Temporary("run").string() + "'")
+                .exit,
+            0);
+  std::ofstream(Temporary("figure.png")) << "the old one";
+  std::ofstream(Temporary("stop.sh")) << R"sh(cd "$(dirname "$0")"
+"$1" report run --figure 0-4 --Figure.panel_width_px 1500 -o figure.png 2>err.txt & pid=$!
+for try in {1..500}; do
+  [ $(( 0x$(sed -n "s/^SigCgt:.*\(........\)$/\1/p" /proc/$pid/status) & 0x4000 )) != 0 ] && break; sleep 0.01
+done
+kill -TERM $pid; wait $pid
+)sh";
+  const int status = std::system(("bash '" + Temporary("stop.sh").string() + "' '" PLIANT_PROGRAM "'").c_str());
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 1);
+  EXPECT_EQ(ReadText(Temporary("err.txt")), "pliant report: stopped on request; nothing was written\n");
+  EXPECT_EQ(ReadText(Temporary("figure.png")), "the old one");
+}
+
 TEST(Program, ReportSaysWhatItCannotWrite) {
   const auto error = [](const std::string& arguments, int exit) {
     const Outcome outcome = Pliant("report --run run " + arguments);

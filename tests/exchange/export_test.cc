@@ -241,6 +241,24 @@ TEST(Export, FilesAFrameAreNotAddedToThoseThatAreThere) {
   EXPECT_FALSE(std::filesystem::exists(folder.Path("out/.unfinished")));
 }
 
+TEST(Export, ARunsOwnFolderIsNotWrittenInto) {
+  const TestFolder folder;
+  WriteRun(folder);
+  const std::string path = folder.Read("run/trajectory.txt");
+  for (const ExportFormat& format : ExportFormats()) {
+    const std::string name(format.name);
+    const Status status = ExportRun({folder.Path("run"), "", name, folder.Path("run")}, {}).status();
+    EXPECT_EQ(status.code(), ErrorCode::kInvalidArgument) << name;
+    EXPECT_THAT(status.message(), HasSubstr("holds a run; give another --output_path")) << name;
+  }
+  EXPECT_EQ(folder.Read("run/trajectory.txt"), path);
+  ExportOptions options;
+  options.stride = 2;
+  EXPECT_TRUE(ExportRun({folder.Path("run"), "", "tum", folder.Path("run/tum")}, options).ok());
+  EXPECT_EQ(folder.Read("run/trajectory.txt"), path);
+  EXPECT_NE(folder.Read("run/tum/trajectory.txt"), "");
+}
+
 TEST(Export, ARunThatWasKilledNeedsItsSequence) {
   const TestFolder folder;
   WriteRun(folder, End::kKilled);

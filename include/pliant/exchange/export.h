@@ -73,9 +73,9 @@ struct ExportSummary {
 
 // Fails with kNotFound, kUnreadable or kMismatch for what cannot be read, and images or a surface that are not the
 // run's; kInsufficient if no frame was tracked, or none has a depth; kInvalidArgument if there is no such format, the
-// folder has a model in another one, or images or files a frame already, or the format has no images to mask or to give
-// depths; kUnwritable. `progress` is told of the frames of a format that holds images or reads observations (task
-// "export"); where it asks to stop nothing is left. All files of all submaps appear together.
+// folder holds a run, has a model in another format, or images or files a frame already, or the format has no images to
+// mask or to give depths; kUnwritable. `progress` is told of the frames of a format that holds images or reads
+// observations (task "export"); where it asks to stop nothing is left. All files of all submaps appear together.
 Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options,
                                 const JobProgress& progress = {});
 
