@@ -11,7 +11,9 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "pliant/base/files.h"
 #include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
 #include "pliant/viewer/figure.h"
 #include "viewer/draw_image.h"
 #include "viewer/draw_legend.h"
@@ -145,6 +147,10 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
     if (!progress(++done, static_cast<int>(frames_idx.size()))) break;
   }
   writer.release();
+  // A part of a film must not take the place of a whole one.
+  if (done < static_cast<int>(frames_idx.size()) && Exists(output_path))
+    return unwritten({ErrorCode::kInterrupted,
+                      "stopped on request; the film " + Quoted(output_path) + " that was there is unchanged"});
   if (CountFrames(draft) != done) return unwritten(Unwritable(output_path));
   std::error_code error;
   std::filesystem::rename(draft, output_path, error);

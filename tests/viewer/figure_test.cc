@@ -393,6 +393,16 @@ TEST_F(FigureTest, AFilmThatIsStoppedIsWholeUpToThere) {
   EXPECT_EQ(frames, 2);
 }
 
+TEST_F(FigureTest, AFilmThatIsStoppedLeavesTheOldOne) {
+  folder_.Write("film.mp4", "the old one");
+  const Status stopped =
+      WriteFilm(Request(), options_, folder_.Path("film.mp4"), [](int done, int) { return done < 2; }).status();
+  EXPECT_EQ(stopped.code(), ErrorCode::kInterrupted);
+  EXPECT_THAT(stopped.message(), testing::HasSubstr("that was there is unchanged"));
+  EXPECT_EQ(folder_.Read("film.mp4"), "the old one");
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("film.part.mp4")));
+}
+
 TEST_F(FigureTest, AFilmThatFailsLeavesTheOldOne) {
   folder_.Write("film.mp4", "the old one");
   folder_.Write("sequence/images/000014.png", "no image");

@@ -56,8 +56,8 @@ Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const F
                                              const std::vector<int>& frames_idx, const std::string& output_path);
 
 // Every frame of the runs in order, as H.264 where OpenCV's FFmpeg has an encoder for it, else as MPEG-4. `progress` is
-// told how many of how many frames are done, and says whether to go on; a film that ends so is whole up to there.
-// Returns and fails likewise.
+// told how many of how many frames are done, and says whether to go on; a film that ends so is whole up to there, but
+// does not replace one that is there: this fails with kInterrupted. Returns and fails likewise.
 Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const FigureOptions& options,
                                            const std::string& output_path,
                                            const std::function<bool(int, int)>& progress);
