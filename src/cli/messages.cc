@@ -52,10 +52,13 @@ std::string TextEvent(std::string_view event, std::string_view text) {
 }
 
 void SayLine(std::string_view event, std::string_view kind, std::string_view sentence) {
-  std::cerr << (IsJson() ? TextEvent(event, Shortened(sentence))
-                         : Shortened(TheLogging().command + ": " + std::string(kind) + std::string(sentence)) + "\n")
-            << std::flush;
+  const std::string line = TheLogging().command + ": " + std::string(kind) + std::string(sentence);
+  std::cerr << (IsJson() ? TextEvent(event, Shortened(sentence)) : Shortened(Printable(line)) + "\n") << std::flush;
 }
+
+// Of UTF-8: U+0000 to U+001F and U+007F are a byte each, U+0080 to U+009F two.
+bool IsControl(char byte) { return static_cast<unsigned char>(byte) < 0x20U || byte == '\x7f'; }
+bool IsSecondOfControl(char byte) { return (static_cast<unsigned char>(byte) & 0xE0U) == 0x80U; }
 
 }  // namespace
 
@@ -73,6 +76,16 @@ std::string EventLine(std::string_view event, std::string_view members) {
          (members.empty() ? "" : ",") + std::string(members) + "}\n";
 }
 
+std::string Printable(std::string_view line) {
+  std::string printable;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool is_pair = line[i] == '\xc2' && i + 1 < line.size() && IsSecondOfControl(line[i + 1]);
+    printable += is_pair || IsControl(line[i]) ? '?' : line[i];
+    if (is_pair) ++i;
+  }
+  return printable;
+}
+
 void SayError(std::string_view sentence) { SayLine("error", "", sentence); }
 
 void SayWarning(std::string_view sentence) {
@@ -82,14 +95,14 @@ void SayWarning(std::string_view sentence) {
 
 void SayNote(std::string_view sentence) {
   if (TheLogging().level < LogLevel::kInfo) return;
-  std::cout << (IsJson() ? TextEvent("note", sentence) : "note: " + std::string(sentence) + "\n") << std::flush;
+  std::cout << (IsJson() ? TextEvent("note", sentence) : "note: " + Printable(sentence) + "\n") << std::flush;
 }
 
 void SayResult(std::string_view text) {
   if (TheLogging().level < LogLevel::kInfo) return;
   while (text.ends_with('\n')) text.remove_suffix(1);
   for (const std::string_view line : Split(text, '\n'))
-    std::cout << (IsJson() ? TextEvent("result", line) : std::string(line) + "\n");
+    std::cout << (IsJson() ? TextEvent("result", line) : Printable(line) + "\n");
   std::cout << std::flush;
 }
 

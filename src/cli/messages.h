@@ -3,7 +3,8 @@
 
 // What a command says while it works: results and notes on standard output, errors, warnings and progress on standard
 // error. Every command has --log_level, which leaves out what is less than an error or a warning, and --log_format,
-// which makes every line a JSON object with "event" (error, warning, note, progress, result) and "command".
+// which makes every line a JSON object with "event" (error, warning, note, progress, result) and "command". In text,
+// control characters of what they quote are replaced (Printable).
 #pragma once
 
 #include <array>
@@ -36,6 +37,10 @@ void SayWarning(std::string_view sentence);
 void SayNote(std::string_view sentence);
 // What was found: a line, or several with line ends between them.
 void SayResult(std::string_view text);
+
+// A line with '?' for each control character of UTF-8 in it, line breaks and tabs too: names in files of others must
+// not reach a terminal as commands, nor as lines of their own.
+std::string Printable(std::string_view line);
 
 // As printf writes them.
 template <class... Values>

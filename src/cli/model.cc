@@ -73,7 +73,7 @@ int CheckCommand(std::span<const std::string> args) {
   const std::vector<colmap::Finding> findings = colmap::CheckModel(*model);
   for (const colmap::Finding& finding : findings)
     SayResult((finding.severity == colmap::Severity::kError ? "error: " : "warning: ") + std::string(finding.what) +
-              ": " + std::to_string(finding.count) + ", the first: " + finding.example);
+              ": " + std::to_string(finding.count) + ", the first: " + Printable(finding.example));
   const auto format = colmap::FindModel(path);
   if (format.ok() && *format == colmap::Format::kBoth)
     SayNote("there are text files too; COLMAP reads the binary ones");

@@ -104,8 +104,7 @@ void Progress::ClearBar() {
 void Progress::Note(std::string_view text) {
   if (style_ == ProgressStyle::kQuiet) return;
   ClearBar();
-  out_ << (style_ == ProgressStyle::kJson ? EventLine("note", "\"text\":" + JsonString(text))
-                                          : std::string(text) + "\n")
+  out_ << (style_ == ProgressStyle::kJson ? EventLine("note", "\"text\":" + JsonString(text)) : Printable(text) + "\n")
        << std::flush;
 }
 

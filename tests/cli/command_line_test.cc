@@ -280,6 +280,25 @@ TEST(CommandLine, WhatToDoIsKeptOfALongReasonWhyThereIsNoMap) {
   EXPECT_THAT(said, testing::EndsWith(" ... " + advice + "\n"));
 }
 
+TEST(CommandLine, ControlCharactersOfFilesDoNotReachTheTerminal) {
+  const std::string name =
+      "a\x1b[2J\nb\r\tc\x7f\xc2\x9b"
+      "3m \xc3\xa9 \xc2\xb5 \xc2";
+  const std::string shown = "a?[2J?b??c??3m \xc3\xa9 \xc2\xb5 \xc2";
+  EXPECT_EQ(Printable(name), shown);
+  TheLogging() = {};
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  SayError(name);
+  SayWarning(name);
+  SayNote(name);
+  SayResult("first\nsec\x1bond\n");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "note: " + shown + "\nfirst\nsec?ond\n");
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(said, HasSubstr(": " + shown + "\n"));
+  EXPECT_THAT(said, HasSubstr(": warning: " + shown + "\n"));
+}
+
 TEST(CommandLine, AProgramThatDoesOneThingSpeaksUnderItsOwnName) {
   CommandLine line({.command = "", .summary = "peel", .text = "Peels.", .examples = {}, .program = "peeler"});
   const OptionTable none;

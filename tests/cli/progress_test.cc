@@ -95,6 +95,13 @@ TEST(Progress, AnUnknownTotalShowsTheCountAlone) {
   EXPECT_EQ(out.str().find('['), out.str().find("[K")) << "no bar without a total";
 }
 
+TEST(Progress, NotesOfFramesHaveNoControlCharacters) {
+  std::ostringstream out;
+  Progress progress(out, ProgressStyle::kLines, "track", 25);
+  progress.Note("frame a\x1b]0;b\n.png: lost");
+  EXPECT_EQ(out.str(), "frame a?]0;b?.png: lost\n");
+}
+
 TEST(Progress, QuietSaysNothing) {
   std::ostringstream out;
   {
