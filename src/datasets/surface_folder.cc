@@ -71,8 +71,10 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
         return Status(ErrorCode::kUnreadable,
                       Quoted(summary) + " says of the windows that were compared what cannot be");
     }
-  } catch (const nlohmann::json::exception& error) {
-    return Status(ErrorCode::kUnreadable, Quoted(summary) + " is not a surface's: " + error.what());
+  } catch (const nlohmann::json::exception&) {
+    return Status(ErrorCode::kUnreadable, Quoted(summary) +
+                                              " is not a surface's surface.json: an entry is missing, or of another "
+                                              "kind; make the surface again with pliant surface");
   }
   return folder;
 }
