@@ -502,7 +502,7 @@ def report(runs: Any, output_path: StrPath, options: OptionValues | None = None,
         figure: numbers of the frames of a still.
         sequence, camera: the images, with truth where there is truth, and their calibration file.
         surface_paths: surface folders of the runs, whose meshes the page shows.
-        on_progress: of a page or a film, called with what is done, how much of it is done, and how much there is.
+        on_progress: called with what is done, how much of it is done, and how much there is.
 
     Returns:
         What is missing or left out, a sentence each.

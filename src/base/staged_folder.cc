@@ -28,15 +28,20 @@ void AddRenamings(const fs::path& from, const fs::path& to, std::vector<Renaming
 
 }  // namespace
 
-StagedFolder::StagedFolder(fs::path folder, fs::path staged, FolderLock lock)
-    : lock_(std::move(lock)), folder_(std::move(folder)), staged_(std::move(staged)) {}
+StagedFolder::StagedFolder(fs::path folder, fs::path staged, FolderLock lock, bool was_made)
+    : lock_(std::move(lock)), folder_(std::move(folder)), staged_(std::move(staged)), was_made_(was_made) {}
 
 StagedFolder::StagedFolder(StagedFolder&& other) noexcept
-    : lock_(std::move(other.lock_)), folder_(std::move(other.folder_)), staged_(std::exchange(other.staged_, {})) {}
+    : lock_(std::move(other.lock_)),
+      folder_(std::move(other.folder_)),
+      staged_(std::exchange(other.staged_, {})),
+      was_made_(other.was_made_) {}
 
 StagedFolder::~StagedFolder() {
   std::error_code error;
-  if (!staged_.empty()) fs::remove_all(staged_, error);
+  if (staged_.empty()) return;
+  fs::remove_all(staged_, error);
+  if (was_made_) fs::remove(folder_, error);  // fails where something is in it
 }
 
 Status CheckAbsent(const fs::path& folder, const std::vector<std::string>& names) {
@@ -50,11 +55,11 @@ Status CheckAbsent(const fs::path& folder, const std::vector<std::string>& names
 Result<StagedFolder> StagedFolder::Create(const fs::path& folder, const std::vector<std::string>& names) {
   if (Status status = CheckAbsent(folder, names); !status.ok()) return status;
   std::error_code error;
-  fs::create_directories(folder, error);
+  const bool was_made = fs::create_directories(folder, error);
   if (error) return Unwritable(folder);
   auto lock = FolderLock::Take(folder);
   if (!lock.ok()) return lock.status();
-  StagedFolder result(folder, folder / kUnfinished, *std::move(lock));
+  StagedFolder result(folder, folder / kUnfinished, *std::move(lock), was_made);
   fs::remove_all(result.staged_, error);  // that of an export that was killed
   fs::create_directories(result.staged_, error);
   if (error) return Unwritable(result.staged_);

@@ -90,13 +90,15 @@ int WritePage(const CommandLine& line, const ReportArguments& arguments, const R
 }
 
 int WriteRunBundle(const CommandLine& line, const ReportArguments& arguments) {
-  const auto summary = WriteBundle({.run_path = arguments.view.run_paths.front(),
-                                    .output_path = arguments.output_path,
-                                    .sequence_path = arguments.view.sequence_path,
-                                    .camera_path = arguments.view.camera_path,
-                                    .images = arguments.bundle_images ? BundledImages::kSome : BundledImages::kNone,
-                                    .program_version = ProgramVersion(),
-                                    .replaces_bundle = arguments.overwrite});
+  const BundleRequest request{.run_path = arguments.view.run_paths.front(),
+                              .output_path = arguments.output_path,
+                              .sequence_path = arguments.view.sequence_path,
+                              .camera_path = arguments.view.camera_path,
+                              .images = arguments.bundle_images ? BundledImages::kSome : BundledImages::kNone,
+                              .program_version = ProgramVersion(),
+                              .replaces_bundle = arguments.overwrite};
+  const auto summary =
+      WithBars(StopOnSignals(), [&](const JobProgress& progress) { return WriteBundle(request, progress); });
   if (!summary.ok()) return line.Failure(summary.status());
   SayNotes(summary->notes);
   SayResult(std::to_string(summary->files.size()) + " files, " + Digits(summary->megabytes, 1) + " MB in " +
@@ -116,6 +118,13 @@ Result<std::vector<std::string>> WriteFilmWithProgress(const ReportArguments& ar
   if (notes.ok() && stopped)
     return Status(ErrorCode::kInsufficient, "stopped on request; the film up to there is in " + arguments.output_path);
   return notes;
+}
+
+Result<std::vector<std::string>> WriteFigureWithProgress(const ReportArguments& arguments, const FigureOptions& options,
+                                                         const std::vector<int>& frames_idx) {
+  return WithBars(StopOnSignals(), [&](const JobProgress& progress) {
+    return WriteFigure(arguments.view, options, frames_idx, arguments.output_path, progress);
+  });
 }
 
 }  // namespace
@@ -154,7 +163,7 @@ int ReportCommand(std::span<const std::string> args) {
   if (arguments.bundle) return WriteRunBundle(line, arguments);
   if (arguments.figure.empty() && !arguments.video) return WritePage(line, arguments, report_options);
   const auto notes = arguments.video ? WriteFilmWithProgress(arguments, figure_options)
-                                     : WriteFigure(arguments.view, figure_options, frames_idx, arguments.output_path);
+                                     : WriteFigureWithProgress(arguments, figure_options, frames_idx);
   if (!notes.ok()) return line.Failure(notes.status().message());
   SayNotes(*notes);
   SayResult(arguments.output_path);

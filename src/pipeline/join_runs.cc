@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <system_error>
 #include <utility>
 
@@ -61,7 +62,8 @@ Status FinishAsParts(const std::vector<RunPart>& parts, RunWriter* writer) {
 }
 
 Result<RunSummary> WriteJoined(const JoinRequest& request, const JoinOptions& options,
-                               const std::vector<RunPart>& parts, const PartJoiner& joiner) {
+                               const std::vector<RunPart>& parts, const PartJoiner& joiner,
+                               const JobProgress& progress) {
   OptionTable table;
   JoinOptions listed = options;
   listed.List(table);
@@ -80,7 +82,10 @@ Result<RunSummary> WriteJoined(const JoinRequest& request, const JoinOptions& op
     readers.push_back(*std::move(opened));
   }
   JoinedReports reports(parts, joiner);
-  for (const auto& [frame_idx, part] : PartOfFrames(parts)) {
+  const std::map<int, std::size_t> frames = PartOfFrames(parts);
+  int done = 0;
+  for (const auto& [frame_idx, part] : frames) {
+    if (Status status = Tell(progress, "write", done++, static_cast<int>(frames.size())); !status.ok()) return status;
     auto seen = readers[part].Of(frame_idx);
     if (!seen.ok()) return seen.status();
     if (Status status = writer->Write(reports.Report(part, frame_idx, *std::move(seen))); !status.ok()) return status;
@@ -126,7 +131,7 @@ Result<JoinSummary> JoinRuns(const JoinRequest& request, const JoinOptions& opti
     if (Status status = joiner.Join(static_cast<std::size_t>(i)); !status.ok()) return status;
     if (Status status = Tell(progress, "join", i, joints); !status.ok()) return status;
   }
-  auto written = WriteJoined(request, options, *parts, joiner);
+  auto written = WriteJoined(request, options, *parts, joiner, progress);
   if (!written.ok()) return written.status();
   return JoinSummary{joiner.TakeJoints(), *std::move(written)};
 }

@@ -322,8 +322,8 @@ Texts Report(const py::dict& request, const std::vector<int>& frames, const py::
   RaiseUnlessOk(CheckEnding(output, output_path));
   Interrupt interrupt;
   return ValueOf(WithoutGil(&interrupt, [&]() -> Result<Texts> {
-    if (output == ViewOutput::kFigure) return WriteFigure(view, figure_options, frames, output_path);
     const JobProgress progress = Telling(on_progress, &interrupt);
+    if (output == ViewOutput::kFigure) return WriteFigure(view, figure_options, frames, output_path, progress);
     if (output == ViewOutput::kPage) return WritePage(view, report_options, output_path, progress);
     return WriteFilm(view, figure_options, output_path,
                      [&](int done, int total) { return progress("film", done, total); });

@@ -239,13 +239,12 @@ std::string SmallJpeg(cv::Mat image) {
 
 class Bundle {
  public:
-  Bundle(const BundleRequest& request, StagedFolder staged) : request_(request), staged_(std::move(staged)) {}
+  Bundle(const BundleRequest& request, const JobProgress& progress, StagedFolder staged)
+      : request_(request), progress_(progress), staged_(std::move(staged)) {}
 
   Status Add(const std::string& name, const std::string& content) {
-    if (Status status = WriteFileAtomically(staged_.Path(name).string(), content); !status.ok()) return status;
-    summary_.files.push_back(name);
-    summary_.megabytes += static_cast<double>(content.size()) / 1e6;
-    return Status::Ok();
+    if (Status status = Write(name, content); !status.ok()) return status;
+    return Tell(progress_, "bundle", static_cast<int>(summary_.files.size()), 0);
   }
 
   Status AddTable(const std::string& name, bool has_header) {
@@ -284,18 +283,26 @@ class Bundle {
                 ? " It holds no images.\n"
                 : " It holds images of the recording (images/), which whoever gets it can see.\n";
     for (const std::string& note : summary_.notes) text += "\nnote: " + WithoutImageNames(note);
-    if (Status status = Add(kReadMe, text + (summary_.notes.empty() ? "" : "\n")); !status.ok()) return status;
+    if (Status status = Write(kReadMe, text + (summary_.notes.empty() ? "" : "\n")); !status.ok()) return status;
     DeleteBundle(request_.output_path);
     if (Status status = staged_.Commit(); !status.ok()) return status;
     return summary_;
   }
 
  private:
+  Status Write(const std::string& name, const std::string& content) {
+    if (Status status = WriteFileAtomically(staged_.Path(name).string(), content); !status.ok()) return status;
+    summary_.files.push_back(name);
+    summary_.megabytes += static_cast<double>(content.size()) / 1e6;
+    return Status::Ok();
+  }
+
   Status AddImages(Sequence& sequence) {
     if (Status status = staged_.AddFolder("images"); !status.ok()) return status;
     const int count = std::max(1, sequence.size());
     int taken = 0;
     for (int i = 0; taken < kMaxBundledImages; ++i) {
+      if (Status status = Tell(progress_, "images", i, sequence.size()); !status.ok()) return status;
       auto frame = sequence.Next();
       if (!frame.ok()) {
         summary_.notes.push_back("the images end early: " + WithoutPaths(frame.status().message()));
@@ -303,7 +310,7 @@ class Bundle {
       }
       if (!frame->has_value()) break;
       if (static_cast<long long>(i) * kMaxBundledImages < static_cast<long long>(taken) * count) continue;
-      if (Status status = Add("images/" + std::to_string((*frame)->frame_idx) + ".jpg", SmallJpeg((*frame)->image));
+      if (Status status = Write("images/" + std::to_string((*frame)->frame_idx) + ".jpg", SmallJpeg((*frame)->image));
           !status.ok())
         return status;
       ++taken;
@@ -312,6 +319,7 @@ class Bundle {
   }
 
   const BundleRequest& request_;
+  const JobProgress& progress_;
   StagedFolder staged_;
   BundleSummary summary_;
 };
@@ -333,7 +341,7 @@ std::string WithoutPaths(const std::string& text) {
   return cleaned.append(last, text.cend());
 }
 
-Result<BundleSummary> WriteBundle(const BundleRequest& request) {
+Result<BundleSummary> WriteBundle(const BundleRequest& request, const JobProgress& progress) {
   const auto summary_text = ReadFile(request.run_path + "/" + kSummary);
   if (!summary_text.ok()) return summary_text.status();
   const auto run = ReadRunSummary(request.run_path + "/" + kSummary);
@@ -341,7 +349,7 @@ Result<BundleSummary> WriteBundle(const BundleRequest& request) {
   auto staged = StageBundle(request);
   if (!staged.ok()) return staged.status();
   const std::vector<fs::path> known = KnownPaths(request.run_path, run->description);
-  Bundle bundle(request, *std::move(staged));
+  Bundle bundle(request, progress, *std::move(staged));
   if (Status status = bundle.Add(kVersions, VersionsText(request.program_version, run->description)); !status.ok())
     return status;
   if (Status status = bundle.Add(kSummary, CleanedSummary(*summary_text, known)); !status.ok()) return status;

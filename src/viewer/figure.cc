@@ -50,13 +50,16 @@ struct Layout {
   static double RunLine(const View& view) { return view.runs.size() > 1 ? kLine : 0; }
 };
 
-// Draws all of the figure. Fails as FrameImages does.
+// Draws all of the figure. Fails as FrameImages does, and with kInterrupted.
 Status Draw(cairo_t* drawing, const View& view, const SceneDrawer& scenes, const Layout& layout,
-            const std::set<int>& frames_idx) {
+            const std::set<int>& frames_idx, const JobProgress& progress) {
   auto images = FrameImages::Open(view, *frames_idx.begin());
   if (!images.ok()) return images.status();
   double left = kGap;
+  int done = 0;
   for (const int frame_idx : frames_idx) {
+    if (Status status = Tell(progress, "figure", done++, static_cast<int>(frames_idx.size())); !status.ok())
+      return status;
     DrawText(drawing, left, kLine - 6, layout.panel.width, "frame " + std::to_string(frame_idx));
     const auto image = images->At(frame_idx);
     if (!image.ok()) return image.status();
@@ -102,10 +105,11 @@ void FigureOptions::List(OptionTable& table) {
 }
 
 Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const FigureOptions& options,
-                                             const std::vector<int>& frames_idx, const std::string& output_path) {
+                                             const std::vector<int>& frames_idx, const std::string& output_path,
+                                             const JobProgress& progress) {
   ViewRequest pictures = request;
   pictures.figures = false;
-  const auto view = OpenView(pictures, options.view);
+  const auto view = OpenView(pictures, options.view, progress);
   if (!view.ok()) return view.status();
   if (Status status = CheckSurfaceColor(*view, options.surface_color); !status.ok()) return status;
   if (Status status = CheckFrames(*view, frames_idx); !status.ok()) return status;
@@ -113,8 +117,9 @@ Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const F
   const PanelSize panel(*view, options);
   const SceneDrawer scenes(*view, options, panel.width, panel.height);
   const Layout layout(*view, panel, scenes.Legend(columns), columns.size());
-  const Status written = WritePicture(output_path, layout.width, layout.height,
-                                      [&](cairo_t* drawing) { return Draw(drawing, *view, scenes, layout, columns); });
+  const Status written = WritePicture(output_path, layout.width, layout.height, [&](cairo_t* drawing) {
+    return Draw(drawing, *view, scenes, layout, columns, progress);
+  });
   if (!written.ok()) return written;
   return view->notes;
 }

@@ -125,6 +125,23 @@ TEST(Files, OfAStagedFolderAppearTogetherOrNotAtAll) {
   EXPECT_EQ(Read(folder.Path("0/a")), "after");
 }
 
+TEST(Files, OfAStagedFolderThatWasMadeNothingStaysWithoutCommit) {
+  const TemporaryFolder folder("staged");
+  for (const char* name : {"made", "was_there"}) {
+    if (name == std::string("was_there")) fs::create_directories(folder.Path(name));
+    auto staged = StagedFolder::Create(folder.Path(name), {});
+    ASSERT_TRUE(staged.ok());
+    Write(staged->Path("a").string(), "after");
+  }
+  {
+    auto staged = StagedFolder::Create(folder.Path("used"), {});
+    ASSERT_TRUE(staged.ok());
+    Write(folder.Path("used/b"), "of another program");
+  }
+  EXPECT_EQ(NamesIn(folder.Path("")), (std::vector<std::string>{"used", "was_there"}));
+  EXPECT_EQ(NamesIn(folder.Path("used")), (std::vector<std::string>{"b"}));
+}
+
 TEST(FileGroup, IsTheOnlyOneThatWritesAFile) {
   const TemporaryFolder folder("file_group_alone");
   {

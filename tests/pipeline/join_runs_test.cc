@@ -309,9 +309,11 @@ TEST_F(JoinRunsTest, StoppedOnRequestItWritesNothing) {
   JoinRequest request;
   request.run_paths = {folder_.Path("first"), folder_.Path("second")};
   request.output_path = folder_.Path("joined");
-  const auto joined = JoinRuns(request, {}, [](auto, int, int) { return false; });
-  EXPECT_EQ(joined.status().code(), ErrorCode::kInterrupted);
-  EXPECT_FALSE(std::filesystem::exists(folder_.Path("joined")));
+  for (const std::string last : {"read", "join", "write"}) {
+    const auto joined = JoinRuns(request, {}, [&](std::string_view task, int, int) { return task != last; });
+    EXPECT_EQ(joined.status().code(), ErrorCode::kInterrupted) << last;
+    EXPECT_FALSE(std::filesystem::exists(folder_.Path("joined"))) << last;
+  }
 }
 
 }  // namespace

@@ -171,6 +171,22 @@ TEST_F(BundleTest, IsMadeOfARunWhoseImagesAreGone) {
   EXPECT_THAT(TextsOf(*bundle), Not(HasSubstr("smith")));
 }
 
+TEST_F(BundleTest, StoppedOnRequestItLeavesNothing) {
+  BundleRequest request{.run_path = run_, .output_path = bundle_, .images = BundledImages::kSome};
+  const auto stop_at = [&](const std::string& last) {
+    return WriteBundle(request, [&](std::string_view task, int done, int) { return task != last || done < 2; });
+  };
+  for (const std::string task : {"bundle", "images"}) {
+    EXPECT_EQ(stop_at(task).status().code(), ErrorCode::kInterrupted) << task;
+    EXPECT_FALSE(fs::exists(bundle_)) << task;
+  }
+  ASSERT_TRUE(WriteBundle(request).ok());
+  request.replaces_bundle = true;
+  EXPECT_EQ(stop_at("images").status().code(), ErrorCode::kInterrupted);
+  EXPECT_TRUE(fs::exists(bundle_ + "/images/18.jpg")) << "of the former one";
+  EXPECT_FALSE(fs::exists(bundle_ + "/.unfinished"));
+}
+
 TEST_F(BundleTest, WhatIsNoRunOrThereAlreadyIsAnError) {
   EXPECT_EQ(WriteBundle({.run_path = sequence_, .output_path = bundle_}).status().code(), ErrorCode::kNotFound);
   EXPECT_FALSE(fs::exists(bundle_));

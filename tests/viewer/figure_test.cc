@@ -385,6 +385,17 @@ TEST_F(FigureTest, APictureBeyondAllBoundsIsRefused) {
   EXPECT_THAT(Write("figure.png").message(), HasSubstr("is too large; give fewer frames"));
 }
 
+TEST_F(FigureTest, StoppedOnRequestItLeavesTheOldOne) {
+  folder_.Write("figure.svg", "the old one");
+  const Status stopped =
+      WriteFigure(Request(), options_, {10, 14}, folder_.Path("figure.svg"), [](std::string_view task, int done, int) {
+        return task != "figure" || done < 1;
+      }).status();
+  EXPECT_EQ(stopped.code(), ErrorCode::kInterrupted);
+  EXPECT_THAT(stopped.message(), testing::HasSubstr("nothing was written"));
+  EXPECT_EQ(folder_.Read("figure.svg"), "the old one");
+}
+
 TEST_F(FigureTest, AFilmThatIsStoppedIsWholeUpToThere) {
   ASSERT_TRUE(WriteFilm(Request(), options_, folder_.Path("film.mp4"), [](int done, int) { return done < 2; }).ok());
   cv::VideoCapture film(folder_.Path("film.mp4"));

@@ -27,7 +27,7 @@ class StagedFolder {
   static Result<StagedFolder> Create(const std::filesystem::path& folder, const std::vector<std::string>& names);
   StagedFolder(StagedFolder&& other) noexcept;
   StagedFolder& operator=(StagedFolder&&) = delete;
-  ~StagedFolder();  // what was not committed is deleted
+  ~StagedFolder();  // what was not committed is deleted, and the folder where Create made it and it is empty
 
   // Where entries are written until Commit, and one of them.
   const std::filesystem::path& path() const { return staged_; }
@@ -39,11 +39,12 @@ class StagedFolder {
   Status Commit();
 
  private:
-  StagedFolder(std::filesystem::path folder, std::filesystem::path staged, FolderLock lock);
+  StagedFolder(std::filesystem::path folder, std::filesystem::path staged, FolderLock lock, bool was_made);
 
   FolderLock lock_;
   std::filesystem::path folder_;
   std::filesystem::path staged_;  // empty: nothing to delete
+  bool was_made_ = false;         // the folder, by Create
 };
 
 }  // namespace pliant

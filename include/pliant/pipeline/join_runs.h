@@ -59,8 +59,8 @@ Status CheckPaths(const JoinRequest& request);
 // kMismatch for a run that cannot be read, is another program's, or is not of the same images, calibration and stride
 // as the first, kInsufficient where no run has a pose, kInvalidArgument as CheckPaths and for an output
 // folder that holds something else, kUnwritable, and kInterrupted where `progress` asks to stop, which is heeded until
-// the joints are known: before, the output folder is not touched. The joined run appears in it whole, and where that
-// fails what was there before is still there.
+// all frames are written. The joined run appears in the output folder whole, and where that fails what was there before
+// is still there.
 Result<JoinSummary> JoinRuns(const JoinRequest& request, const JoinOptions& options, const JobProgress& progress);
 
 }  // namespace pliant

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/status.h"
 #include "pliant/base/version.h"
 
@@ -37,8 +38,9 @@ struct BundleSummary {
 
 // All files appear together, or none. Fails with kNotFound where `run_path` holds no run.json, with kInvalidArgument
 // where the folder holds a bundle that is to stay, or other files of these names, kUnreadable and kUnwritable. Images
-// that are missing are a note.
-Result<BundleSummary> WriteBundle(const BundleRequest& request);
+// that are missing are a note. `progress` is told of the files (task "bundle") and of the images that are gone through
+// ("images"); where it asks to stop nothing is written: kInterrupted.
+Result<BundleSummary> WriteBundle(const BundleRequest& request, const JobProgress& progress = {});
 
 // `text` without the folders and names of files: what stands in single quotes and has a /, and a word that begins with
 // a / or has one and an ending, become <path> with that ending: "<path>.mp4".

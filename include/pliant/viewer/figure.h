@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/viewer/view.h"
@@ -51,9 +52,11 @@ struct FigureOptions {
 
 // One column a frame: its image (where there are images), and below it the scene, a row a run. The ending of
 // `output_path` says what is written: .png, .svg or .pdf. Returns what is missing, a sentence each. Fails as OpenView
-// does, with kInvalidArgument for a frame that no run has, and with kUnwritable.
+// does, with kInvalidArgument for a frame that no run has, and with kUnwritable. `progress` is told of the frames that
+// are compared with the truth and drawn; where it asks to stop nothing is written: kInterrupted.
 Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const FigureOptions& options,
-                                             const std::vector<int>& frames_idx, const std::string& output_path);
+                                             const std::vector<int>& frames_idx, const std::string& output_path,
+                                             const JobProgress& progress = {});
 
 // Every frame of the runs in order, as H.264 where OpenCV's FFmpeg has an encoder for it, else as MPEG-4. `progress` is
 // told how many of how many frames are done, and says whether to go on; a film that ends so is whole up to there, but
