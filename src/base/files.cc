@@ -26,19 +26,6 @@ std::string Former(const std::string& name) { return name + ".former"; }
 
 std::string Reason(int error) { return std::generic_category().message(error); }
 
-// Whether it is a regular file that is there.
-Status CheckIsFile(const std::string& path) {
-  std::error_code error;
-  const auto kind = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(kind))
-    return {ErrorCode::kNotFound, "there is no file " + Quoted(path) + "; check the path"};
-  if (std::filesystem::is_directory(kind))
-    return {ErrorCode::kUnreadable, Quoted(path) + " is a folder; give a file in it"};
-  if (!std::filesystem::is_regular_file(kind))  // which may be endless
-    return {ErrorCode::kUnreadable, Quoted(path) + " is a pipe or a device; give a file"};
-  return Status::Ok();
-}
-
 // The file at the path for this one alone, empty, or -1 with a reason. Where another one renamed what was opened before
 // it could be locked, the path is another file.
 int OpenAlone(const std::string& path, int* reason) {
@@ -78,6 +65,18 @@ Status CannotCreate(const std::string& path, int error) {
 bool Exists(const std::string& path) {
   std::error_code error;
   return std::filesystem::exists(path, error);
+}
+
+Status CheckIsFile(const std::string& path) {
+  std::error_code error;
+  const auto kind = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(kind))
+    return {ErrorCode::kNotFound, "there is no file " + Quoted(path) + "; check the path"};
+  if (std::filesystem::is_directory(kind))
+    return {ErrorCode::kUnreadable, Quoted(path) + " is a folder; give a file in it"};
+  if (!std::filesystem::is_regular_file(kind))  // which may be endless
+    return {ErrorCode::kUnreadable, Quoted(path) + " is a pipe or a device; give a file"};
+  return Status::Ok();
 }
 
 Status Unwritable(const std::filesystem::path& path) {

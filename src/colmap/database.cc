@@ -113,7 +113,7 @@ Status ReadMatches(const std::string& path, SqliteDatabase& file, const PlaceOfI
 }  // namespace
 
 Result<Database> ReadDatabase(const std::string& path) {
-  if (!Exists(path)) return Status(ErrorCode::kNotFound, "there is no file " + Quoted(path));
+  if (Status status = CheckIsFile(path); !status.ok()) return status;
   auto file = SqliteDatabase::Open(path, SqliteAccess::kRead);
   if (!file.ok()) return file.status();
   Database database;

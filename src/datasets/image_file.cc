@@ -18,6 +18,7 @@
 #include <zlib.h>
 
 #include "image/image_size.h"
+#include "pliant/base/files.h"
 
 namespace pliant {
 namespace {
@@ -25,11 +26,7 @@ namespace {
 using Bytes = std::vector<unsigned char>;
 
 Result<Bytes> ReadBytes(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error))
-    return Status(ErrorCode::kNotFound, "there is no file " + path.string() + "; check the name");
-  if (!std::filesystem::is_regular_file(path, error))
-    return Status(ErrorCode::kUnreadable, path.string() + " is not a file; an image file belongs there");
+  if (Status status = CheckIsFile(path.string()); !status.ok()) return status;
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return Status(ErrorCode::kUnreadable, "cannot open " + path.string() + "; check its permissions");
   Bytes bytes(static_cast<std::size_t>(file.tellg()));

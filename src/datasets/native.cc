@@ -3,8 +3,8 @@
 
 // The native sequence: camera.yaml, images/ and what may stand beside them (docs/formats.md).
 #include <cmath>
-#include <fstream>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "datasets/depth_array.h"
@@ -14,6 +14,7 @@
 #include "datasets/set_files.h"
 #include "pliant/base/files.h"
 #include "pliant/base/options.h"
+#include "pliant/base/text.h"
 #include "pliant/datasets/frame_checks.h"
 #include "pliant/datasets/native_layout.h"
 #include "pliant/io/camera_file.h"
@@ -35,22 +36,21 @@ Status WrongLineCount(const fs::path& file, const std::string& what, std::size_t
 
 // One time a line, seconds, growing; lines that start with # are comments.
 Result<std::vector<double>> ReadTimes(const fs::path& file) {
-  std::ifstream stream(file);
-  if (!stream || !IsFile(file))
-    return Status(ErrorCode::kUnreadable, "cannot open " + file.string() + "; check that it is a readable file");
+  auto reader = LineReader::Open(file.string());
+  if (!reader.ok()) return reader.status();
   std::vector<double> times_s;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
+  std::string_view line;
+  while (reader->Next(&line)) {
     const std::string text = Trimmed(line);
     if (text.empty() || text.front() == '#') continue;
-    const std::string where = file.string() + ":" + std::to_string(number) + ": ";
     double time_s = 0;
     if (!ParseDouble(text, &time_s) || !std::isfinite(time_s))
-      return Status(ErrorCode::kUnreadable, where + "'" + text + "' is not a time; a line has one number, in seconds");
+      return reader->Error(Quoted(text) + " is not a time; a line has one number, in seconds");
     if (!times_s.empty() && !(time_s > times_s.back()))
-      return Status(ErrorCode::kUnreadable, where + "the time is not after the line before; times grow");
+      return reader->Error("the time is not after the line before; times grow");
     times_s.push_back(time_s);
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   return times_s;
 }
 

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant {
@@ -240,6 +241,7 @@ std::optional<cv::Size> SizeIn(std::istream* file) {
 }  // namespace
 
 std::optional<cv::Size> ReadImageSize(const std::filesystem::path& path) {
+  if (!CheckIsFile(path.string()).ok()) return std::nullopt;
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
   return SizeIn(&file);

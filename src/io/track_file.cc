@@ -122,6 +122,7 @@ Status CheckPixels(const std::string& path, TrackFile* file) {
 // As what its first bytes say that it is.
 Result<TrackFile> ReadByContent(const std::string& path) {
   if (!Exists(path)) return Status(ErrorCode::kNotFound, "there is no file of tracks at " + Quoted(path));
+  if (Status status = CheckIsFile(path); !status.ok()) return status;
   std::string begin(kSqliteMagic.size(), '\0');
   std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
   if (begin == kSqliteMagic) return ReadTrackDatabase(path);

@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "pliant/base/files.h"
 #include "pliant/base/options.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {
@@ -23,7 +22,6 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 3> kColumns = {"frame", "u_px", "v_px"};
 
 std::vector<std::string_view> Cells(std::string_view line) {
-  if (line.ends_with('\r')) line.remove_suffix(1);
   std::vector<std::string_view> cells;
   while (true) {
     const std::size_t comma = line.find(',');
@@ -82,36 +80,36 @@ std::vector<FramePixel> PixelGrid(const Camera& camera, int frame_idx, int step_
 }
 
 Result<std::vector<FramePixel>> ReadFramePixels(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) return {ErrorCode::kNotFound, "there is no file " + path.string()};
-  std::ifstream file(path);
-  std::string line;
-  const auto unreadable = [&](int number, const std::string& what) {
-    return Status(ErrorCode::kUnreadable, path.string() + ":" + std::to_string(number) + ": " + what);
-  };
-  if (!std::getline(file, line)) return unreadable(1, "the file is empty or cannot be read; give frame,u_px,v_px");
+  auto reader = LineReader::Open(path.string());
+  if (!reader.ok()) return reader.status();
+  std::string_view line;
+  if (!reader->Next(&line)) {
+    if (Status status = reader->End(); !status.ok()) return status;
+    return {ErrorCode::kUnreadable, PathAndLine(path.string(), 1) + ": the file is empty; give frame,u_px,v_px"};
+  }
   const std::vector<std::string_view> header = Cells(line);
   std::array<std::size_t, kColumns.size()> column_idx{};
   for (std::size_t i = 0; i < kColumns.size(); ++i) {
     const auto found = std::ranges::find(header, kColumns[i]);
     if (found == header.end())
-      return unreadable(1, "the header has no column " + std::string(kColumns[i]) + "; it must name frame,u_px,v_px");
+      return reader->Error("the header has no column " + std::string(kColumns[i]) + "; it must name frame,u_px,v_px");
     column_idx[i] = static_cast<std::size_t>(found - header.begin());
   }
   const std::size_t columns = header.size();
   std::vector<FramePixel> starts;
-  for (int number = 2; std::getline(file, line); ++number) {
+  while (reader->Next(&line)) {
     const std::vector<std::string_view> cells = Cells(line);
     if (cells.size() == 1 && cells[0].empty()) continue;
     if (cells.size() != columns)
-      return unreadable(number, "the header has " + std::to_string(columns) + " columns, this line has " +
-                                    std::to_string(cells.size()));
+      return reader->Error("the header has " + std::to_string(columns) + " columns, this line has " +
+                           std::to_string(cells.size()));
     FramePixel start;
     if (!ParseInt(cells[column_idx[0]], &start.frame_idx) || !ParseDouble(cells[column_idx[1]], &start.pixel.x()) ||
         !ParseDouble(cells[column_idx[2]], &start.pixel.y()))
-      return unreadable(number, "frame is a whole number, u_px and v_px are numbers");
+      return reader->Error("frame is a whole number, u_px and v_px are numbers");
     starts.push_back(start);
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   return starts;
 }
 

@@ -15,6 +15,7 @@
 
 #include "pliant/base/staged_folder.h"
 #include "support/temporary_folder.h"
+#include "support/text_pipe.h"
 
 namespace pliant {
 namespace {
@@ -57,6 +58,25 @@ TEST(Files, AreReadWithTheLastFileDescriptorAndNotWithoutOne) {
   const auto text = ReadFile(path);
   ASSERT_FALSE(text.ok());
   EXPECT_EQ(text.status().code(), ErrorCode::kUnreadable);
+}
+
+TEST(Files, AreToldFromWhatMayNotBeOpened) {
+  const TemporaryFolder folder("files");
+  const std::string file = folder.Path("file");
+  ASSERT_TRUE(WriteFileAtomically(file, "content").ok());
+  fs::create_symlink(file, folder.Path("link"));
+  EXPECT_TRUE(CheckIsFile(file).ok());
+  EXPECT_TRUE(CheckIsFile(folder.Path("link")).ok());
+  EXPECT_EQ(CheckIsFile(folder.Path("nothing")).code(), ErrorCode::kNotFound);
+  EXPECT_EQ(CheckIsFile(folder.Path("")).message(), "'" + folder.Path("") + "' is a folder; give a file in it");
+  const TextPipe pipe(folder.Path("pipe"), "content");
+  for (const std::string& path : {folder.Path("pipe"), std::string("/dev/zero")}) {
+    const std::string sentence = "'" + path + "' is a pipe or a device; give a file";
+    EXPECT_EQ(CheckIsFile(path).message(), sentence);
+    EXPECT_EQ(ReadFile(path).status().message(), sentence);
+    EXPECT_EQ(LineReader::Open(path).status().message(), sentence);
+  }
+  EXPECT_TRUE(pipe.IsUnread());
 }
 
 void Write(const std::string& path, const std::string& text) { ASSERT_TRUE(WriteFileAtomically(path, text).ok()); }

@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "datasets/opened_sequence.h"
+#include "support/text_pipe.h"
 
 namespace pliant {
 namespace {
@@ -93,6 +94,24 @@ TEST_F(OpenSequenceTest, RefusesTimesThatAreShortGarbledOrNotGrowing) {
   ExpectRefused(Request(), ErrorCode::kUnreadable, "times.txt:2");
   Text("times.txt", "0\n1\n1\n");
   ExpectRefused(Request(), ErrorCode::kUnreadable, "times.txt:3");
+}
+
+TEST_F(OpenSequenceTest, RefusesPipesWhereFilesBelong) {
+  WriteNative(3);
+  {
+    const TextPipe times(Path("times.txt"), "0\n1\n2\nthe end\n");
+    ExpectRefused(Request(), ErrorCode::kUnreadable, "times.txt' is a pipe or a device");
+    EXPECT_TRUE(times.IsUnread());
+  }
+  std::filesystem::remove(Path("times.txt"));
+  for (int idx = 0; idx < 2; ++idx) Write("masks/" + Name(idx), cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(255)));
+  const TextPipe mask(Path("masks/" + Name(2)), "no image");
+  ExpectBadFrame(*Open(Request()), 3, 2, ErrorCode::kUnreadable, "000002.png' is a pipe or a device");
+  std::filesystem::remove_all(Path("masks"));
+  std::filesystem::remove(Path("images/" + Name(1)));
+  const TextPipe image(Path("images/" + Name(1)), "no image");
+  ExpectBadFrame(*Open(Request()), 3, 1, ErrorCode::kUnreadable, "000001.png' is a pipe or a device");
+  EXPECT_TRUE(mask.IsUnread() && image.IsUnread());
 }
 
 }  // namespace

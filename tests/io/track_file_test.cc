@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "support/test_folder.h"
+#include "support/text_pipe.h"
 #include "support/tolerances.h"
 #include "support/zip_file.h"
 
@@ -257,6 +258,13 @@ TEST(TrackFile, ThatIsNotThereOrAFolderIsSaid) {
   const TestFolder folder;
   EXPECT_EQ(ReadTrackFile(folder.Path("nowhere.csv")).status().code(), ErrorCode::kNotFound);
   EXPECT_THAT(ReadTrackFile(folder.Path("")).status().message(), HasSubstr("is a folder"));
+}
+
+TEST(TrackFile, IsNoPipe) {
+  const TestFolder folder;
+  const TextPipe pipe(folder.Path("tracks"), "frame,track_id,u_px,v_px\n0,0,1.5,2\n");
+  EXPECT_THAT(ReadTrackFile(folder.Path("tracks")).status().message(), HasSubstr("tracks' is a pipe or a device"));
+  EXPECT_TRUE(pipe.IsUnread());
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "simulation/small_scene.h"
+#include "support/text_pipe.h"
 #include "support/tolerances.h"
 
 namespace pliant {
@@ -116,6 +117,12 @@ TEST_F(MaterialTruthTest, NamesTheLineThatIsWrong) {
   EXPECT_THAT(ReadFramePixels(Write("frame,x,y\n")).status().message(), HasSubstr("no column u_px"));
   EXPECT_THAT(ReadFramePixels(Write("frame,u_px,v_px\n0,1,2\n0,1\n")).status().message(), HasSubstr("points.csv:3"));
   EXPECT_THAT(ReadFramePixels(Write("frame,u_px,v_px\n0.5,1,2\n")).status().message(), HasSubstr("points.csv:2"));
+}
+
+TEST_F(MaterialTruthTest, DoesNotReadPointsFromAPipe) {
+  const TextPipe pipe(folder_ / "pipe", "frame,u_px,v_px\n0,1,2\nthe end\n");
+  EXPECT_THAT(ReadFramePixels(folder_ / "pipe").status().message(), HasSubstr("pipe' is a pipe or a device"));
+  EXPECT_TRUE(pipe.IsUnread());
 }
 
 TEST_F(MaterialTruthTest, RefusesFramesAndPixelsThatAreNotThere) {

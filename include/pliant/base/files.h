@@ -22,6 +22,10 @@ namespace pliant {
 // Whether something is there that can be seen; never throws.
 bool Exists(const std::string& path);
 
+// Whether it is a regular file, or a link to one. Fails with kNotFound, and with kUnreadable for a folder, a pipe or a
+// device. To be asked before a file is opened: opening a pipe waits for its other end, and a device may be endless.
+Status CheckIsFile(const std::string& path);
+
 // kUnwritable, for a file or folder that could not be written.
 Status Unwritable(const std::filesystem::path& path);
 
