@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "datasets/image_file.h"
@@ -17,6 +18,14 @@ namespace {
 constexpr double kMaxStep_s = 1000;        // of any camera
 constexpr double kMicrosecondSteps = 1e6;  // larger ones are nanoseconds
 constexpr double kMaxPriorStretch = 0.02;  // of the sides' ratio: sizes are rounded to multiples of a network's patches
+
+// As in trajectory.txt, from which a run is read again.
+std::string WrittenTime(double time_s) {
+  constexpr int kDecimals = 6;
+  std::string text;
+  AppendFixed(&text, time_s, kDecimals);
+  return text;
+}
 
 }  // namespace
 
@@ -37,6 +46,12 @@ Status CheckFrameTimes(std::span<const double> times_s, const std::string& what)
     if (!std::isfinite(times_s[k]) || (k > 0 && !(times_s[k] > times_s[k - 1])))
       return {ErrorCode::kInvalidArgument,
               what + " not finite, or not growing, at frame " + std::to_string(k) + "; give times that grow"};
+  }
+  for (std::size_t k = 1; k < times_s.size(); ++k) {
+    if (WrittenTime(times_s[k]) == WrittenTime(times_s[k - 1]))
+      return {ErrorCode::kInvalidArgument, what + " the same to a microsecond at the frames " + std::to_string(k - 1) +
+                                               " and " + std::to_string(k) +
+                                               ", and a run writes no more of them; give seconds"};
   }
   const std::string_view unit = UnitOfSteps(times_s);
   if (unit.empty()) return Status::Ok();

@@ -11,6 +11,7 @@
 
 #include "datasets/formats.h"
 #include "pliant/datasets/frame_checks.h"
+#include "pliant/io/camera_file.h"
 
 namespace pliant {
 namespace {
@@ -52,6 +53,7 @@ Result<DataSet> OpenGivenImages(const SequenceRequest& request) {
                       (given.images->count() > 0 ? std::to_string(given.images->count()) : "an unknown number of") +
                       " images; each image needs one");
   if (Status status = CheckFrameTimes(given.timestamps_s, "the timestamps are"); !status.ok()) return status;
+  if (Status status = CheckFps(given.fps); !status.ok()) return status;
   DataSet data_set{.calibration = {given.camera, "that was given"},
                    .images = std::make_unique<GivenStream>(given.images),
                    .mask_path = request.mask_path,

@@ -188,8 +188,10 @@ Status WriteTruth(const ImportRequest& request, const Imported& imported, const 
     for (TimedPose& pose : poses) pose.world_from_cam.translation /= unit_mm;
   } else {
     CameraFile file{camera};
-    if (poses.size() > 1)
-      file.fps = static_cast<double>(poses.size() - 1) / (poses.back().timestamp_s - poses.front().timestamp_s);
+    if (poses.size() > 1) {
+      const double fps = static_cast<double>(poses.size() - 1) / (poses.back().timestamp_s - poses.front().timestamp_s);
+      if (CheckFps(fps).ok()) file.fps = fps;  // another one makes a file that is not read
+    }
     if (Status status = WriteCameraFile((folder / "camera.yaml").string(), file); !status.ok()) return status;
   }
   return WriteTumTrajectory((folder / "groundtruth.txt").string(), poses);

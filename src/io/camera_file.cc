@@ -113,9 +113,9 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
   for (const NumberField* field : {&width, &height})
     if (field->value != std::floor(field->value) || std::abs(field->value) > 1e6)
       return invalid(Quoted(path), std::string(field->name) + " must be a whole number of pixels");
-  for (const NumberField* field : {&fps, &depth_scale})
-    if (field->given && !(field->value > 0.0))
-      return invalid(Quoted(path), std::string(field->name) + " must be positive");
+  if (fps.given)
+    if (const Status status = CheckFps(fps.value); !status.ok()) return invalid(Quoted(path), status.message());
+  if (depth_scale.given && !(depth_scale.value > 0.0)) return invalid(Quoted(path), "depth_scale must be positive");
 
   double unit_mm = 1.0;
   if (const YAML::Node unit = root["unit"]; unit) {
@@ -284,6 +284,13 @@ Result<Camera> ReadCamera(const std::string& path, const CameraFileOptions& opti
   auto file = ReadCameraFile(path, options);
   if (!file.ok()) return file.status();
   return std::move(file->camera);
+}
+
+Status CheckFps(double fps) {
+  constexpr double kFewest = 1e-3;
+  constexpr double kMost = 1e5;  // the steps of times are ten of the last decimal of trajectory.txt
+  if (fps >= kFewest && fps <= kMost) return Status::Ok();
+  return {ErrorCode::kInvalidArgument, "fps is " + FormatDouble(fps) + "; give frames a second, from 0.001 to 100000"};
 }
 
 Status WriteCameraFile(const std::string& path, const CameraFile& file, LengthUnit unit) {

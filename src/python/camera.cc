@@ -4,7 +4,6 @@
 #include "pliant/camera/camera.h"
 
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -29,8 +28,8 @@ namespace {
 Calibration MakeCalibration(const std::string& model, const py::object& width, const py::object& height,
                             const py::object& params, const py::object& fps) {
   const std::optional<double> given_fps = fps.is_none() ? std::nullopt : std::optional(NumberOf(fps, "fps"));
-  if (given_fps && !(*given_fps > 0 && std::isfinite(*given_fps)))
-    RaiseValueError("fps is " + FormatDouble(*given_fps) + "; give the images a second, above 0");
+  if (given_fps)
+    if (const Status status = CheckFps(*given_fps); !status.ok()) RaiseValueError(status.message());
   return {
       ValueOf(Camera::Create(model, WholeOf(width, "width"), WholeOf(height, "height"), NumbersOf(params, "params"))),
       given_fps};

@@ -26,6 +26,14 @@ TEST(FrameTimes, AreSecondsThatGrow) {
                 HasSubstr("not growing, at frame 2"));
 }
 
+TEST(FrameTimes, DifferInWhatARunWritesOfThem) {
+  EXPECT_TRUE(CheckFrameTimes(Every(1e-6), "times are").ok());
+  EXPECT_TRUE(CheckFrameTimes(std::vector{1.7e9, 1.7e9 + 1e-5}, "times are").ok()) << "of a clock";
+  EXPECT_THAT(CheckFrameTimes(Every(1e-7), "times are").message(),
+              HasSubstr("times are the same to a microsecond at the frames"));
+  EXPECT_FALSE(CheckFrameTimes(std::vector{0.0, 0.1, 0.1 + 4e-7}, "times are").ok());
+}
+
 TEST(FrameTimes, OfAnotherUnitAreNamed) {
   EXPECT_THAT(CheckFrameTimes(Every(33333), "times are").message(),
               HasSubstr("times are 33333 apart, as microseconds"));

@@ -91,6 +91,14 @@ TEST(GivenImages, TimesAreOneAnImage) {
   EXPECT_THAT(status.message(), HasSubstr("there are 3 timestamps for 2 images"));
 }
 
+TEST(GivenImages, OfARateThatNoRunCanWriteAreRefused) {
+  SequenceRequest request = RequestOf(2);
+  auto fast = std::make_shared<GivenImages>(*request.given);
+  fast->fps = 3e6;
+  request.given = fast;
+  EXPECT_THAT(OpenSequence(request).status().message(), HasSubstr("give frames a second, from 0.001 to 100000"));
+}
+
 TEST(GivenImages, OfAnotherSizeThanTheCamerasAreRefused) {
   SequenceRequest request = RequestOf(2);
   auto other = std::make_shared<GivenImages>(*request.given);

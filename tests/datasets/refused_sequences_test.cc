@@ -94,6 +94,8 @@ TEST_F(OpenSequenceTest, RefusesTimesThatAreShortGarbledOrNotGrowing) {
   ExpectRefused(Request(), ErrorCode::kUnreadable, "times.txt:2");
   Text("times.txt", "0\n1\n1\n");
   ExpectRefused(Request(), ErrorCode::kUnreadable, "times.txt:3");
+  Text("times.txt", "0\n0.0000001\n0.0000002\n");
+  ExpectRefused(Request(), ErrorCode::kMismatch, "times.txt are the same to a microsecond");
 }
 
 TEST_F(OpenSequenceTest, RefusesPipesWhereFilesBelong) {

@@ -62,8 +62,9 @@ class Camera(TestCase):
             with self.assertRaises(ValueError) as caught:
                 pliant.Camera(model, 640, 480, params)
             sentence(self, caught.exception)
-        with self.assertRaises(ValueError):
-            pliant.Camera("PINHOLE", 640, 480, [400, 400, 320, 240], fps=0)
+        for fps in (0, 1e-300, 3e6, float("nan")):
+            with self.assertRaises(ValueError):
+                pliant.Camera("PINHOLE", 640, 480, [400, 400, 320, 240], fps=fps)
 
     def test_a_file_is_read(self):
         camera = pliant.read_camera(SEQUENCE / "camera.yaml")

@@ -21,8 +21,8 @@ double MedianStep(std::span<const double> times);
 // thousand, "nanoseconds" above a million; else empty.
 std::string_view UnitOfSteps(std::span<const double> times_s);
 
-// Times of successive frames, seconds: finite, growing, and not of another unit (UnitOfSteps). `what` begins the
-// sentence ("the times in times.txt are"). Fails with kInvalidArgument.
+// Times of successive frames, seconds: finite, growing, told apart by the six decimals that a run writes, and not of
+// another unit (UnitOfSteps). `what` begins the sentence ("the times in times.txt are"). Fails with kInvalidArgument.
 Status CheckFrameTimes(std::span<const double> times_s, const std::string& what);
 
 // A depth prior of any size, whose sides are to one another as those of the images. `what` begins the sentence. Fails

@@ -32,6 +32,10 @@ struct ImageSize {
 // Of numbers that a file says; nothing unless they are whole, from 1 to 10^6.
 std::optional<ImageSize> ToImageSize(double width, double height);
 
+// Frames a second, which give times that a run writes and reads again: from 0.001 to 100000. Fails with
+// kInvalidArgument.
+Status CheckFps(double fps);
+
 struct CameraFileOptions {
   std::optional<int> camera_id;         // which of several cameras in a COLMAP file
   std::optional<ImageSize> image_size;  // used where the file does not say the size, as OpenCV's often do not
