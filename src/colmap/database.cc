@@ -6,6 +6,8 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "colmap/sqlite.h"
 #include "pliant/base/files.h"
@@ -38,7 +40,24 @@ bool IsMatrix(std::string_view bytes, std::int64_t rows, std::int64_t columns) {
          bytes.size() % (4 * static_cast<std::size_t>(columns)) == 0;
 }
 
-Result<PlaceOfImage> ReadImages(SqliteDatabase& file, Database* database) {
+// Before anything is read: the tables of COLMAP's that are, as tables.
+Status CheckTables(const std::string& path, SqliteDatabase& file) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> tables = {
+      {"cameras", {"camera_id", "width", "height"}},
+      {"images", {"image_id", "name", "camera_id"}},
+      {"keypoints", {"image_id", "rows", "cols", "data"}},
+      {"two_view_geometries", {"pair_id", "rows", "cols", "data"}}};
+  for (const auto& [table, columns] : tables) {
+    const auto is_stored = file.IsStored(table, columns);
+    if (!is_stored.ok()) return is_stored.status();
+    if (!*is_stored)
+      return {ErrorCode::kUnreadable, "the database " + Quoted(path) + " is none of COLMAP's: it has no table " +
+                                          table + " with the columns " + CommaSeparated(columns)};
+  }
+  return Status::Ok();
+}
+
+Result<PlaceOfImage> ReadImages(const std::string& path, SqliteDatabase& file, Database* database) {
   auto rows = SqliteQuery::Create(file,
                                   "SELECT images.image_id, images.name, cameras.width, cameras.height FROM images JOIN "
                                   "cameras ON images.camera_id = cameras.camera_id ORDER BY images.image_id");
@@ -48,7 +67,8 @@ Result<PlaceOfImage> ReadImages(SqliteDatabase& file, Database* database) {
     const auto more = rows->Next();
     if (!more.ok()) return more.status();
     if (!*more) return places;
-    places[rows->Int(0)] = database->images.size();
+    if (!places.emplace(rows->Int(0), database->images.size()).second)
+      return Damaged(path, "image " + std::to_string(rows->Int(0)) + " comes twice, or has two cameras");
     database->images.push_back({std::string(rows->Text(1)),
                                 static_cast<std::uint64_t>(rows->Int(2)),
                                 static_cast<std::uint64_t>(rows->Int(3)),
@@ -117,7 +137,8 @@ Result<Database> ReadDatabase(const std::string& path) {
   auto file = SqliteDatabase::Open(path, SqliteAccess::kRead);
   if (!file.ok()) return file.status();
   Database database;
-  const auto places = ReadImages(*file, &database);
+  if (Status status = CheckTables(path, *file); !status.ok()) return status;
+  const auto places = ReadImages(path, *file, &database);
   if (!places.ok()) return places.status();
   Status status = ReadKeypoints(path, *file, *places, &database);
   if (status.ok()) status = ReadMatches(path, *file, *places, &database);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 
 #include <sqlite3.h>
@@ -34,6 +35,24 @@ bool MayBeReadAsUnchanging(sqlite3* database) {
   const std::string file = sqlite3_db_filename(database, "main");  // where a link leads to
   const auto journal_bytes = std::filesystem::file_size(file + "-wal", error);
   return error ? error == std::errc::no_such_file_or_directory : journal_bytes == 0;
+}
+
+// A database is a program, too. Of one that is only read nothing is run, and what it says of lengths is not believed.
+void Distrust(sqlite3* database) {
+  for (const int allowed : {SQLITE_DBCONFIG_ENABLE_VIEW, SQLITE_DBCONFIG_TRUSTED_SCHEMA})
+    sqlite3_db_config(database, allowed, 0, static_cast<int*>(nullptr));
+  sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, static_cast<int*>(nullptr));
+  sqlite3_drop_modules(database, nullptr);
+  constexpr std::uintmax_t kFewestBytes = 1 << 20;  // of what SQLite itself puts together
+  constexpr std::uintmax_t kMostBytes = std::numeric_limits<int>::max();
+  std::uintmax_t bytes = kFewestBytes;
+  const std::string file = sqlite3_db_filename(database, "main");
+  for (const std::string& path : {file, file + "-wal"}) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (!error) bytes = std::min(bytes + size, kMostBytes);
+  }
+  sqlite3_limit(database, SQLITE_LIMIT_LENGTH, static_cast<int>(bytes));  // at most that of its build
 }
 
 // By which SQLite takes a file as one that nobody writes.
@@ -81,6 +100,7 @@ Result<SqliteDatabase> SqliteDatabase::Open(const std::string& path, SqliteAcces
   }
   if (code != SQLITE_OK) return database.Failure("open");
   sqlite3_busy_timeout(handle, kBusyMs);
+  if (access == SqliteAccess::kRead) Distrust(handle);
   return database;
 }
 
@@ -101,6 +121,21 @@ Result<std::vector<std::string>> SqliteDatabase::Columns(const std::string& tabl
     names.emplace_back(reinterpret_cast<const char*>(sqlite3_column_text(handle, 0)));
   if (code != SQLITE_DONE) return Failure("read");
   return names;
+}
+
+Result<bool> SqliteDatabase::IsStored(const std::string& table, const std::vector<std::string>& columns) {
+  // Asked first: to list the columns of a view is to look through all that it is made of.
+  for (const std::string& column : columns) {
+    const int code = sqlite3_table_column_metadata(database_.get(), "main", table.c_str(), column.c_str(), nullptr,
+                                                   nullptr, nullptr, nullptr, nullptr);
+    if (code == SQLITE_ERROR) return false;
+    if (code != SQLITE_OK) return Failure("read");
+  }
+  const auto stored = Columns(table);  // without those that are generated
+  if (!stored.ok()) return stored.status();
+  return std::all_of(columns.begin(), columns.end(), [&](const std::string& column) {
+    return std::find(stored->begin(), stored->end(), column) != stored->end();
+  });
 }
 
 Result<SqliteInsert> SqliteInsert::Create(SqliteDatabase& database, const std::string& table,

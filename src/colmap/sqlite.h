@@ -31,11 +31,15 @@ class SqliteDatabase {
  public:
   // A database that is there. Fails with kUnreadable if it is none, kUnwritable if it cannot be written or is locked.
   // One that is only read fails with kUnreadable alone, and needs no files beside it that could be
-  // written, unless its journal holds something.
+  // written, unless its journal holds something. Nothing in it is computed then: views and virtual tables cannot be
+  // read, and no value is longer than the file.
   static Result<SqliteDatabase> Open(const std::string& path, SqliteAccess access = SqliteAccess::kWrite);
 
   // Names of a table's columns; empty: there is no such table.
   Result<std::vector<std::string>> Columns(const std::string& table);
+  // Whether it is a table whose rows have these columns stored in the file: no view, no virtual table and no column
+  // that is generated, all of which compute what a query reads, without an end if they are made so.
+  Result<bool> IsStored(const std::string& table, const std::vector<std::string>& columns);
   Status Execute(const std::string& sql);
 
  private:

@@ -109,7 +109,35 @@ TEST_F(TrackDatabase, OfAnotherProgramIsRefused) {
   ASSERT_TRUE(database.ok() && database->Execute("CREATE TABLE songs (title TEXT)").ok());
   const auto file = ReadTrackFile(folder_.Path("b.db"));
   EXPECT_EQ(file.status().code(), ErrorCode::kUnreadable);
-  EXPECT_THAT(file.status().message(), HasSubstr("no such table"));
+  EXPECT_THAT(file.status().message(), HasSubstr("b.db' is none of COLMAP's: it has no table cameras"));
+}
+
+// What it answers may have no end, or be larger than any memory.
+TEST_F(TrackDatabase, ThatComputesWhatItHoldsIsRefused) {
+  Match(1, 2, {0, 0});
+  ASSERT_TRUE(Read().ok());
+  const std::string whole = folder_.Read("a.db");
+  // Of 1000 rows here, so that this test ends.
+  const std::string rows = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n LIMIT 1000) ";
+  for (const auto& [table, made] :
+       {std::pair("images",
+                  "CREATE VIEW images AS " + rows + "SELECT i AS image_id, 'a' AS name, 1 AS camera_id FROM n"),
+        std::pair("keypoints", "CREATE VIEW keypoints AS " + rows +
+                                   "SELECT 1 AS image_id, 1 AS rows, 2 AS cols, '' AS data FROM n WHERE i < 0"),
+        std::pair("keypoints", std::string("CREATE TABLE keypoints (image_id INTEGER, rows INTEGER, cols INTEGER, "
+                                           "data BLOB AS (zeroblob(8 * rows)))"))}) {
+    folder_.Write("a.db", whole);
+    {
+      auto database = SqliteDatabase::Open(folder_.Path("a.db"));
+      ASSERT_TRUE(database.ok() && database->Execute("DROP TABLE " + std::string(table) + "; " + made).ok()) << made;
+    }
+    EXPECT_THAT(Read().status().message(), HasSubstr("it has no table " + std::string(table))) << made;
+  }
+}
+
+TEST_F(TrackDatabase, WhoseImageComesTwiceIsRefused) {
+  Insert("cameras", {"camera_id", "width", "height"}, {std::int64_t{1}, std::int64_t{8}, std::int64_t{8}});
+  EXPECT_THAT(Read().status().message(), HasSubstr("image 1 comes twice, or has two cameras"));
 }
 
 }  // namespace
