@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,10 +46,14 @@ Result<NpyArray> ParseNpy(const std::string& name, std::string_view bytes);
 // A file of format 1.0, whose numbers begin at a multiple of 64 bytes; `data` are the array's bytes.
 std::string NpyBytes(std::string_view type, std::span<const std::size_t> shape, std::string_view data);
 
-// The .npy files in an archive by name, without .npy; other files are left out. `path` begins the sentence of a
-// failure. Fails with kUnreadable: cut off, damaged, encrypted, compressed by something else than deflate, or larger
-// than 4 GB.
-Result<std::map<std::string, std::string>> ParseNpz(const std::string& path, std::string_view bytes);
+// The names of the .npy files in an archive, without .npy; other files are left out. `path` begins the sentence of a
+// failure. Fails with kUnreadable: cut off.
+Result<std::set<std::string>> NpzNames(const std::string& path, std::string_view bytes);
+
+// Those of these names that are there. No other one is unpacked: an archive may hold a thousand times its own size.
+// Fails with kUnreadable: cut off, damaged, encrypted, compressed by something else than deflate, or larger than 4 GB.
+Result<std::map<std::string, std::string>> ParseNpz(const std::string& path, std::string_view bytes,
+                                                    std::span<const std::string_view> names);
 
 // An archive of .npy files, which are stored as they are (np.savez); the same input gives the same bytes. At most 4 GB
 // in all, else the result is empty.

@@ -120,6 +120,26 @@ std::string Unpack(std::string_view bytes, const ZipEntry& entry, std::string* o
   return {};
 }
 
+// The .npy files in the central directory by their names without .npy.
+Result<std::map<std::string, ZipEntry>> ArchiveEntries(const std::string& path, std::string_view bytes) {
+  const auto cut_off = [&] {
+    return Status(ErrorCode::kUnreadable, path + " is a zip file that is cut off; copy it again");
+  };
+  const auto end = FindEnd(bytes);
+  if (!end) return cut_off();
+  const std::uint32_t count = Unsigned(bytes, *end + 10, 2);
+  std::size_t at = Unsigned(bytes, *end + 16, 4);
+  std::map<std::string, ZipEntry> entries;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    auto entry = NextEntry(bytes, &at);
+    if (!entry) return cut_off();
+    if (!entry->name.ends_with(kNpyEnding)) continue;
+    const std::string name = entry->name.substr(0, entry->name.size() - kNpyEnding.size());
+    entries[name] = *std::move(entry);
+  }
+  return entries;
+}
+
 // What the local and the central header of an entry share, from the version on.
 void AppendCommon(const std::string& name, std::string_view content, std::string* out) {
   AppendBytes(out, 20, 2);  // the version that is needed to read it: 2.0
@@ -138,23 +158,26 @@ void AppendCommon(const std::string& name, std::string_view content, std::string
 
 bool IsZip(std::string_view bytes) { return bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06"); }
 
-Result<std::map<std::string, std::string>> ParseNpz(const std::string& path, std::string_view bytes) {
-  const auto cut_off = [&] {
-    return Status(ErrorCode::kUnreadable, path + " is a zip file that is cut off; copy it again");
-  };
-  const auto end = FindEnd(bytes);
-  if (!end) return cut_off();
-  const std::uint32_t count = Unsigned(bytes, *end + 10, 2);
-  std::size_t at = Unsigned(bytes, *end + 16, 4);
+Result<std::set<std::string>> NpzNames(const std::string& path, std::string_view bytes) {
+  const auto entries = ArchiveEntries(path, bytes);
+  if (!entries.ok()) return entries.status();
+  std::set<std::string> names;
+  for (const auto& [name, entry] : *entries) names.insert(name);
+  return names;
+}
+
+Result<std::map<std::string, std::string>> ParseNpz(const std::string& path, std::string_view bytes,
+                                                    std::span<const std::string_view> names) {
+  const auto entries = ArchiveEntries(path, bytes);
+  if (!entries.ok()) return entries.status();
   std::map<std::string, std::string> files;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const auto entry = NextEntry(bytes, &at);
-    if (!entry) return cut_off();
-    if (!entry->name.ends_with(kNpyEnding)) continue;
+  for (const std::string_view name : names) {
+    const auto entry = entries->find(std::string(name));
+    if (entry == entries->end()) continue;
     std::string content;
-    if (const std::string wrong = Unpack(bytes, *entry, &content); !wrong.empty())
-      return Status(ErrorCode::kUnreadable, "the array " + Quoted(entry->name) + " in " + path + " " + wrong);
-    files[entry->name.substr(0, entry->name.size() - kNpyEnding.size())] = std::move(content);
+    if (const std::string wrong = Unpack(bytes, entry->second, &content); !wrong.empty())
+      return Status(ErrorCode::kUnreadable, "the array " + Quoted(entry->second.name) + " in " + path + " " + wrong);
+    files[entry->first] = std::move(content);
   }
   return files;
 }

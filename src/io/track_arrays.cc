@@ -3,10 +3,12 @@
 
 #include "io/track_arrays.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "io/npy.h"
@@ -17,6 +19,7 @@
 namespace pliant {
 namespace {
 
+constexpr std::array<std::string_view, 4> kArrayNames = {"tracks", "visibility", "sigma_px", "track_id"};
 constexpr std::size_t kMaxAxis = std::numeric_limits<std::int32_t>::max();
 
 // The arrays of a file; null: it has none of this name.
@@ -136,13 +139,17 @@ Result<TrackFile> ReadTrackArrays(const std::string& path, std::string_view byte
     if (!tracks.ok()) return tracks.status();
     return TracksOf(Quoted(path), {.tracks = &*tracks});
   }
-  const auto files = ParseNpz(Quoted(path), bytes);
+  const auto names = NpzNames(Quoted(path), bytes);
+  if (!names.ok()) return names.status();
+  for (const char* name : {"tracks", "visibility"})
+    if (!names->contains(name))
+      return Status(ErrorCode::kUnreadable, Quoted(path) + " has no array " + name +
+                                                "; save it with np.savez(file, tracks=tracks, visibility=visibility)");
+  const auto files = ParseNpz(Quoted(path), bytes, kArrayNames);
   if (!files.ok()) return files.status();
   std::map<std::string, NpyArray> arrays;
-  for (const char* name : {"tracks", "visibility", "sigma_px", "track_id"}) {
-    const auto file = files->find(name);
-    if (file == files->end()) continue;
-    auto array = ParseNpy("the array " + Quoted(name) + " in " + Quoted(path), file->second);
+  for (const auto& [name, content] : *files) {
+    auto array = ParseNpy("the array " + Quoted(name) + " in " + Quoted(path), content);
     if (!array.ok()) return array.status();
     arrays[name] = *array;
   }
@@ -150,10 +157,6 @@ Result<TrackFile> ReadTrackArrays(const std::string& path, std::string_view byte
     const auto found = arrays.find(name);
     return found == arrays.end() ? nullptr : &found->second;
   };
-  if (find("tracks") == nullptr || find("visibility") == nullptr)
-    return Status(ErrorCode::kUnreadable, Quoted(path) + " has no array " +
-                                              (find("tracks") == nullptr ? "tracks" : "visibility") +
-                                              "; save it with np.savez(file, tracks=tracks, visibility=visibility)");
   return TracksOf(Quoted(path), {find("tracks"), find("visibility"), find("sigma_px"), find("track_id")});
 }
 

@@ -260,6 +260,22 @@ TEST(TrackFile, ThatIsNotThereOrAFolderIsSaid) {
   EXPECT_THAT(ReadTrackFile(folder.Path("")).status().message(), HasSubstr("is a folder"));
 }
 
+// Damaged, so that whatever unpacks it says so.
+TEST(TrackFile, ArraysThatItDoesNotNeedAreNotUnpacked) {
+  const TestFolder folder;
+  const auto damaged = [](std::string bytes) {
+    bytes[200] ^= 1;  // in the first array
+    return bytes;
+  };
+  const std::string first = std::string(1000, 'a');
+  const std::string archive =
+      ZipFile({{"frames.npy", first}, {"tracks.npy", Tracks()}, {"visibility.npy", Visibility()}}, ZipMethod::kStored);
+  ExpectTheTwoPoints(Read(folder.Write("a.npz", damaged(archive))));
+  const std::string alone = ZipFile({{"tracks.npy", Tracks()}}, ZipMethod::kStored);
+  EXPECT_THAT(ReadTrackFile(folder.Write("b.npz", damaged(alone))).status().message(),
+              HasSubstr("has no array visibility"));
+}
+
 TEST(TrackFile, IsNoPipe) {
   const TestFolder folder;
   const TextPipe pipe(folder.Path("tracks"), "frame,track_id,u_px,v_px\n0,0,1.5,2\n");
