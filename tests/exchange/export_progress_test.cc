@@ -30,6 +30,7 @@ TEST(Export, EndsOnRequestAndLeavesNothing) {
     if (!told) continue;  // it goes through no frames
     ++stopped;
     EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted) << format.name;
+    if (!std::filesystem::exists(request.output_path)) continue;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(request.output_path))
       EXPECT_TRUE(!entry.is_regular_file() || entry.path().extension() == ".log") << entry.path();  // of COLMAP
   }
