@@ -35,7 +35,7 @@ ContourMeasure::ContourMeasure(const cv::Mat& gray, int radius_px) : gray_(gray)
 // The window has 2 * half + 1 pixels a side, and its center lies between pixels: one row and one column more, of which
 // the outer ones count in part.
 ContourMeasure::Moments ContourMeasure::Around(const Eigen::Vector2d& pixel) const {
-  static const std::array<float, 256> kLogs = LogLevels();
+  static const std::array<float, 256> log_levels = LogLevels();
   const int half = step_px_ / 2;  // the two sides' windows, at +-step, leave a gap of about a step between them
   const double x = std::clamp(pixel.x(), 0.0, gray_.cols - 1.0);
   const double y = std::clamp(pixel.y(), 0.0, gray_.rows - 1.0);
@@ -49,7 +49,7 @@ ContourMeasure::Moments ContourMeasure::Around(const Eigen::Vector2d& pixel) con
     double sum = 0;
     double sum_of_squares = 0;
     for (int k = 0; k <= side; ++k) {
-      const double value = kLogs[row[std::clamp(left + k, 0, gray_.cols - 1)]];
+      const double value = log_levels[row[std::clamp(left + k, 0, gray_.cols - 1)]];
       const double weighted = share(k, x - static_cast<int>(x)) * value;
       sum += weighted;
       sum_of_squares += weighted * value;
