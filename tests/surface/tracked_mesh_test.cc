@@ -15,6 +15,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "pliant/base/statistics.h"
+#include "pliant/surface/mesh_geometry.h"
 #include "surface/textured_plane.h"
 
 namespace pliant {
