@@ -12,16 +12,20 @@ namespace {
 
 constexpr double kMinArea = 0.05;  // of a triangle in the image, in cells of the raster
 
-std::uint64_t EdgeOf(std::int32_t from, std::int32_t to) {
-  return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to);
-}
-
 // Twice the area, positive where the corners turn from x to y.
 double TurnOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (b.y() - a.y());
 }
 
 }  // namespace
+
+bool DirectedEdges::ContainsAnyOf(const Triangle& triangle) const {
+  return Contains(triangle[0], triangle[1]) || Contains(triangle[1], triangle[2]) || Contains(triangle[2], triangle[0]);
+}
+
+void DirectedEdges::Add(const Triangle& triangle) {
+  for (std::size_t k = 0; k < 3; ++k) edges_.insert(KeyOf(triangle[k], triangle[(k + 1) % 3]));
+}
 
 MeshSeam::MeshSeam(const PlacedMesh& placed, std::span<const Triangle> triangles, const std::vector<bool>& counts,
                    double largest_step)
@@ -36,7 +40,7 @@ MeshSeam::MeshSeam(const PlacedMesh& placed, std::span<const Triangle> triangles
   };
   for (const Triangle& triangle : triangles) {
     if (!is_there(triangle)) continue;
-    for (std::size_t k = 0; k < 3; ++k) edges_.insert(EdgeOf(triangle[k], triangle[(k + 1) % 3]));
+    edges_.Add(triangle);
     Corners corners;
     bool in_image = true;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -52,7 +56,7 @@ MeshSeam::MeshSeam(const PlacedMesh& placed, std::span<const Triangle> triangles
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t from = triangle[k];
       const std::int32_t to = triangle[(k + 1) % 3];
-      if (edges_.contains(EdgeOf(to, from))) continue;
+      if (edges_.Contains(to, from)) continue;
       is_at_border[static_cast<std::size_t>(from)] = true;
       is_at_border[static_cast<std::size_t>(to)] = true;
     }
@@ -118,12 +122,12 @@ std::vector<std::int32_t> MeshSeam::BorderAround(int column, int row, int reach)
 }
 
 bool MeshSeam::Take(const Triangle& triangle, const PlacedMesh& placed) {
+  if (edges_.ContainsAnyOf(triangle)) return false;
   Corners corners;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto v = static_cast<std::size_t>(triangle[k]);
     if (!placed.pixels[v] || !(placed.depths[v] > 0.0)) return false;
     corners[k] = {*placed.pixels[v], 1.0 / placed.depths[v]};
-    if (edges_.contains(EdgeOf(triangle[k], triangle[(k + 1) % 3]))) return false;
   }
   // The grid's triangles turn from y to x.
   if (TurnOf(corners[0].pixel, corners[1].pixel, corners[2].pixel) > -2.0 * kMinArea * step_px_ * step_px_)
@@ -137,7 +141,7 @@ bool MeshSeam::Take(const Triangle& triangle, const PlacedMesh& placed) {
   if (covered_at(1.0 / 3, 1.0 / 3, 1.0 / 3) || covered_at(kNear, kFar, kFar) || covered_at(kFar, kNear, kFar) ||
       covered_at(kFar, kFar, kNear))
     return false;
-  for (std::size_t k = 0; k < 3; ++k) edges_.insert(EdgeOf(triangle[k], triangle[(k + 1) % 3]));
+  edges_.Add(triangle);
   Cover(corners);
   return true;
 }

@@ -18,6 +18,21 @@
 
 namespace pliant {
 
+// The edges of triangles, each in the direction in which its triangle turns: on one side of a surface none comes twice.
+class DirectedEdges {
+ public:
+  bool Contains(std::int32_t from, std::int32_t to) const { return edges_.contains(KeyOf(from, to)); }
+  bool ContainsAnyOf(const Triangle& triangle) const;
+  void Add(const Triangle& triangle);
+
+ private:
+  static std::uint64_t KeyOf(std::int32_t from, std::int32_t to) {
+    return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to);
+  }
+
+  std::unordered_set<std::uint64_t> edges_;
+};
+
 class MeshSeam {
  public:
   // `counts`, one entry a vertex: triangles with another one are as if they were not there. `largest_step`: by how much
@@ -47,7 +62,7 @@ class MeshSeam {
   int columns_;
   int rows_;
   double largest_step_;
-  std::unordered_set<std::uint64_t> edges_;            // directed, as their triangles turn
+  DirectedEdges edges_;
   std::vector<std::vector<std::int32_t>> border_;      // vertices by the node that they are nearest to
   std::vector<Corners> covering_;                      // triangles in the image
   std::vector<std::vector<std::size_t>> covering_of_;  // of these, those that reach into the cell of a node

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
-#include <set>
 #include <span>
 #include <utility>
 
@@ -107,19 +106,17 @@ std::vector<bool> InLargePieces(const Mesh& mesh, int least) {
 // Vertices that were bad when triangles were added beside them, and are good again, may have two sheets of triangles:
 // the later ones go.
 void DropSecondSheets(std::vector<Triangle>* triangles) {
-  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  DirectedEdges edges;
   std::erase_if(*triangles, [&](const Triangle& triangle) {
-    const auto edge = [&](std::size_t k) { return std::pair(triangle[k], triangle[(k + 1) % 3]); };
-    if (edges.contains(edge(0)) || edges.contains(edge(1)) || edges.contains(edge(2))) return true;
-    edges.insert({edge(0), edge(1), edge(2)});
+    if (edges.ContainsAnyOf(triangle)) return true;
+    edges.Add(triangle);
     return false;
   });
 }
 
-// The vertices that a frame has at the nodes of its grid, and which of them are new.
+// The vertices that a frame has at the nodes of its grid.
 struct Grid {
   std::vector<std::int32_t> vertex;  // row by row; kNoVertex: no surface there, or one that is hidden; kInside
-  std::vector<bool> is_new;
   std::vector<Measured> measured;
 };
 
@@ -233,7 +230,6 @@ Grid TrackedMesh::State::Compare(const DenseDepth& dense, const PlacedMesh& plac
       const std::int32_t vertex =
           measured.depth > 0.0 ? VertexAt(placed, seam, column, row, measured, motion_error) : kNoVertex;
       grid.vertex.push_back(vertex);
-      grid.is_new.push_back(measured.depth > 0.0 && vertex == kNoVertex);
       grid.measured.push_back(measured);
     }
   return grid;
@@ -246,14 +242,11 @@ void TrackedMesh::State::AddVertices(const SurfaceView& view, const RestMotion& 
   for (int row = 0; row < nodes.height; ++row)
     for (int column = 0; column < nodes.width; ++column) {
       const std::size_t node = NodeIndex(column, row);
-      if (!grid->is_new[node]) continue;
+      const Measured& measured = grid->measured[node];
+      if (!(measured.depth > 0.0) || grid->vertex[node] != kNoVertex) continue;
       const Eigen::Vector2d pixel = PixelOf(column, row);
       const auto ray = camera.Unproject(pixel);
-      if (!ray) {
-        grid->is_new[node] = false;
-        continue;
-      }
-      const Measured& measured = grid->measured[node];
+      if (!ray) continue;
       const Eigen::Vector3d in_cam = *ray * (measured.depth / ray->z());
       grid->vertex[node] = static_cast<std::int32_t>(placed->in_cam.size());
       placed->in_cam.push_back(in_cam);

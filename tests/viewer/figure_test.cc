@@ -121,6 +121,11 @@ class FigureTest : public testing::Test {
   ViewRequest Request() const {
     return {.run_paths = {folder_.Path("run")}, .sequence_path = folder_.Path("sequence"), .camera_path = ""};
   }
+  ViewRequest RequestWithSurface() const {
+    ViewRequest request = Request();
+    request.surface_paths = {folder_.Path("surface")};
+    return request;
+  }
   Status Write(const std::string& name, const std::vector<int>& frames_idx = {10, 14}) {
     return WriteFigure(Request(), options_, frames_idx, folder_.Path(name)).status();
   }
@@ -241,8 +246,7 @@ TEST_F(FigureTest, DrawsTheSurfaceInTheColorsOfItsValues) {
   WriteSquare(folder_);
   options_.panel_width_px = 480;
   options_.surface_color = SurfaceColor::kDisplacement;
-  ViewRequest request = Request();
-  request.surface_paths = {folder_.Path("surface")};
+  const ViewRequest request = RequestWithSurface();
   const auto draw = [&](const char* name) {
     EXPECT_TRUE(WriteFigure(request, options_, {10, 14}, folder_.Path(name)).ok());
     return cv::imread(folder_.Path(name));
@@ -272,8 +276,7 @@ TEST_F(FigureTest, ShowsNoSurfaceAfterItsLastKeyAndSaysSo) {
   WriteSquare(folder_);
   options_.panel_width_px = 480;
   options_.surface_color = SurfaceColor::kDisplacement;
-  ViewRequest request = Request();
-  request.surface_paths = {folder_.Path("surface")};
+  const ViewRequest request = RequestWithSurface();
   const auto scene = [&](int frame_idx) {
     EXPECT_TRUE(WriteFigure(request, options_, {frame_idx}, folder_.Path("figure.png")).ok());
     return cv::Mat(cv::imread(folder_.Path("figure.png")), cv::Range(400, 740), cv::Range(12, 484));
@@ -305,8 +308,7 @@ TEST(SceneDrawer, NamesTheMapWhereAFrameHasNoSurface) {
 
 TEST_F(FigureTest, RefusesTheSurfaceOfARunThatWasReplaced) {
   WriteSquare(folder_);
-  ViewRequest request = Request();
-  request.surface_paths = {folder_.Path("surface")};
+  ViewRequest request = RequestWithSurface();
   for (const std::string& checksum : {TrajectoryChecksum(folder_.Path("run")).value(), std::string("00000000")}) {
     folder_.Write("surface/surface.json", "{\"status\": \"completed\", \"run\": \"" + folder_.Path("run") +
                                               "\", \"trajectory_crc32\": \"" + checksum + "\", \"frames\": []}");
@@ -322,8 +324,7 @@ TEST_F(FigureTest, DrawsTheSurfaceInAFilmAndInVectors) {
   WriteSquare(folder_);
   options_.panel_width_px = 320;
   options_.surface_color = SurfaceColor::kError;
-  ViewRequest request = Request();
-  request.surface_paths = {folder_.Path("surface")};
+  ViewRequest request = RequestWithSurface();
   ASSERT_TRUE(WriteFilm(request, options_, folder_.Path("film.mp4"), [](int, int) { return true; }).ok());
   cv::VideoCapture film(folder_.Path("film.mp4"));
   cv::Mat frame;
@@ -343,8 +344,7 @@ TEST_F(FigureTest, ColorsThatNothingHasAreRefused) {
   WriteSquare(folder_);
   options_.surface_color = SurfaceColor::kError;
   std::filesystem::remove_all(folder_.Path("sequence/depth"));
-  ViewRequest request = Request();
-  request.surface_paths = {folder_.Path("surface")};
+  ViewRequest request = RequestWithSurface();
   EXPECT_THAT(WriteFigure(request, options_, {10}, folder_.Path("figure.png")).status().message(),
               HasSubstr("the true surface is not known"));
 }
