@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "pliant/base/statistics.h"
 #include "refinement/bundle_covariance.h"
@@ -17,6 +18,42 @@ namespace {
 // (F9) The found sizes are those of shapes that their own prior has made small, by about so much (found on simulated
 // colons).
 constexpr double kShrunk = 2.0;
+
+// (F7) Of distances that were measured.
+constexpr double kMinMeasuredSigma = 0.002;
+constexpr double kMaxMeasuredSigma = 0.1;
+constexpr double kWrongMeasured = 3.0;  // standard deviations of a residual: a wrong pair
+constexpr double kMinLeftShare = 0.05;  // where a residual is judged by itself; less is known to no more than that
+
+// By which the variance of the measurements is to be multiplied. Residuals of wrong pairs do not count.
+double VarianceFactor(const std::vector<MeasuredResidual>& residuals) {
+  const auto studentized = [](const MeasuredResidual& of) {
+    return std::abs(of.residual) / std::sqrt(std::max(kMinLeftShare, of.left_share));
+  };
+  std::vector<double> lengths;
+  for (const MeasuredResidual& of : residuals) lengths.push_back(studentized(of));
+  const double bound = kWrongMeasured * kMedianToSigma * Median(std::move(lengths));
+  double squares = 0;
+  double left = 0;
+  for (const MeasuredResidual& of : residuals) {
+    if (studentized(of) > bound) continue;
+    squares += of.residual * of.residual;
+    left += of.left_share;
+  }
+  return left > 0 ? squares / left : 1.0;
+}
+
+// (F9) What the solution has taken up of the errors of measured distances is not in the residuals: how much that is
+// follows from the standard deviation that it was found with (variance components: Foerstner, 1979).
+Status CorrectMeasuredSigma(const BundleState& state, BundleInput* input) {
+  BundleState unchanged = state;
+  const auto residuals = MeasuredResiduals(BundleProblem(*input, &unchanged));
+  if (!residuals.ok()) return residuals.status();
+  if (residuals->empty()) return Status::Ok();
+  double& sigma = input->sigmas.measured_log_distance;
+  sigma = std::clamp(sigma * std::sqrt(VarianceFactor(*residuals)), kMinMeasuredSigma, kMaxMeasuredSigma);
+  return Status::Ok();
+}
 
 // (F9) Of a track as one measurement, a coordinate: what a drift moves along the epipolar line goes into the depth, and
 // its residuals show the other coordinate alone.
@@ -48,6 +85,7 @@ Result<BundleCovariance> CovarianceOfBundle(const BundleInput& input, const Bund
   of_tracks.sigmas.size *= kShrunk;
   of_tracks.sigmas.gradient *= kShrunk;
   of_tracks.sigmas.noise_px = TrackNoisePx(input, state);
+  if (Status status = CorrectMeasuredSigma(state, &of_tracks); !status.ok()) return status;
   BundleState unchanged = state;
   return ComputeCovariance(BundleProblem(of_tracks, &unchanged), input.recording);
 }
@@ -94,6 +132,11 @@ std::vector<double> MeasuredDistanceErrors(const Recording& recording, const std
     errors.push_back(std::log(now / measured) * median_distance / measured);
   }
   return errors;
+}
+
+double MeasuredSigma(std::vector<double> errors) {
+  for (double& error : errors) error = std::abs(error);
+  return std::clamp(kMedianToSigma * Median(std::move(errors)), kMinMeasuredSigma, kMaxMeasuredSigma);
 }
 
 double MedianDistance(const Recording& recording) {

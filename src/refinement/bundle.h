@@ -53,6 +53,9 @@ struct BundleSigmas {
 std::vector<double> MeasuredDistanceErrors(const Recording& recording, const std::vector<bool>& used,
                                            const BundleState& state, double median_distance);
 
+// (F8) Their standard deviation, about zero and by the median: 0.002 to 0.1.
+double MeasuredSigma(std::vector<double> errors);
+
 // Of Cauchy's loss, in standard deviations of an error.
 inline constexpr double kBundleLossScale = 2.0;
 

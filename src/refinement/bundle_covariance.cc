@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <random>
 #include <unordered_map>
 #include <utility>
@@ -40,6 +41,21 @@ struct PointNormal {
   Eigen::MatrixXd self;
   std::map<int, Eigen::MatrixXd> by_block;  // block x point
 };
+
+// A term at the problem's variables.
+struct Linearization {
+  Eigen::VectorXd residual;
+  std::vector<RowMajorMatrix> jacobians;  // by its parameter blocks
+};
+
+std::optional<Linearization> Linearize(const ceres::CostFunction& cost, const std::vector<double*>& parameters) {
+  Linearization term{Eigen::VectorXd(cost.num_residuals()), {}};
+  std::vector<double*> data;
+  for (const int size : cost.parameter_block_sizes()) term.jacobians.emplace_back(cost.num_residuals(), size);
+  for (RowMajorMatrix& jacobian : term.jacobians) data.push_back(jacobian.data());
+  if (!cost.Evaluate(parameters.data(), term.residual.data(), data.data())) return std::nullopt;
+  return term;
+}
 
 class Covariance {
  public:
@@ -125,6 +141,27 @@ class Covariance {
       sigmas.push_back(std::sqrt(known_views + sampled.squaredNorm() / kSamples));
     }
     return sigmas;
+  }
+
+  // A term of a view and a point each.
+  std::vector<MeasuredResidual> MeasuredResiduals() const {
+    std::vector<MeasuredResidual> residuals;
+    std::vector<double*> parameters;
+    for (const ceres::ResidualBlockId& id : problem_.measured_distances()) {
+      problem_.terms().GetParameterBlocksForResidualBlock(id, &parameters);
+      const auto term = Linearize(*problem_.terms().GetCostFunctionForResidualBlock(id), parameters);
+      if (!term) continue;
+      const PointNormal& normal = point_normals_[static_cast<std::size_t>(point_of_.at(parameters[1]))];
+      const Eigen::LLT<Eigen::MatrixXd> own(normal.self);
+      const RowMajorMatrix& by_view = term->jacobians[0];
+      const RowMajorMatrix& by_point = term->jacobians[1];
+      const Eigen::RowVectorXd sampled =
+          by_view * SamplesOf(block_of_.at(parameters[0])) + by_point * SampledPoint(normal, own);
+      const double known_views = (by_point * own.solve(Eigen::MatrixXd(by_point.transpose()))).value();
+      const double taken = known_views + sampled.squaredNorm() / kSamples;
+      residuals.push_back({term->residual.value(), 1.0 - taken});
+    }
+    return residuals;
   }
 
  private:
@@ -233,16 +270,13 @@ class Covariance {
 
   void AddTerm(const ceres::CostFunction& cost, const ceres::LossFunction* loss,
                const std::vector<double*>& parameters) {
-    std::vector<RowMajorMatrix> jacobians;
-    std::vector<double*> data;
-    for (const int size : cost.parameter_block_sizes()) jacobians.emplace_back(cost.num_residuals(), size);
-    for (RowMajorMatrix& jacobian : jacobians) data.push_back(jacobian.data());
-    Eigen::VectorXd residual(cost.num_residuals());
-    if (!cost.Evaluate(parameters.data(), residual.data(), data.data())) return;
+    auto term = Linearize(cost, parameters);
+    if (!term) return;
+    std::vector<RowMajorMatrix>& jacobians = term->jacobians;
     double weight = 1.0;
     if (loss != nullptr) {
       std::array<double, 3> rho = {};
-      loss->Evaluate(residual.squaredNorm(), rho.data());
+      loss->Evaluate(term->residual.squaredNorm(), rho.data());
       weight = std::sqrt(rho[1]);
     }
     PointNormal* point = nullptr;
@@ -325,6 +359,13 @@ Result<BundleCovariance> ComputeCovariance(const BundleProblem& problem, const R
     for (std::size_t k = 0; k < sigmas.size(); ++k) result.log_distance_sigmas[observations[i][k]] = sigmas[k];
   }
   return result;
+}
+
+Result<std::vector<MeasuredResidual>> MeasuredResiduals(const BundleProblem& problem) {
+  if (problem.measured_distances().empty()) return std::vector<MeasuredResidual>();
+  Covariance covariance(problem);
+  if (Status status = covariance.Sample(); !status.ok()) return status;
+  return covariance.MeasuredResiduals();
 }
 
 }  // namespace pliant

@@ -201,8 +201,8 @@ void BundleProblem::AddDistances() {
     if (!is_point_in_problem_[point]) continue;
     const double distance = (input_.recording.cams_from_world[view] * seen.position).norm();
     const double sigma = input_.sigmas.measured_log_distance * distance / input_.distance;
-    problem_->AddResidualBlock(NewDistanceCost(poses_[view], distance, sigma, rank_), nullptr, views_[view],
-                               points_[point]);
+    measured_distances_.push_back(problem_->AddResidualBlock(NewDistanceCost(poses_[view], distance, sigma, rank_),
+                                                             nullptr, views_[view], points_[point]));
   }
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!is_point_in_problem_[i] || is_measured[i]) continue;

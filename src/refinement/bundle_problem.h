@@ -32,6 +32,7 @@ class BundleProblem {
   // that has terms is held.
   int rank() const { return rank_; }
   ceres::Problem& terms() const { return *problem_; }
+  const std::vector<ceres::ResidualBlockId>& measured_distances() const { return measured_distances_; }  // (F7)
   const std::vector<double*>& views() const { return views_; }
   // Whose pose is held: the first one that has terms; null: none has.
   const double* held_view() const { return held_view_; }
@@ -68,6 +69,7 @@ class BundleProblem {
   ceres::CauchyLoss loss_;
   std::vector<std::unique_ptr<ceres::ScaledLoss>> losses_;  // a point each
   std::unique_ptr<ceres::Problem> problem_;
+  std::vector<ceres::ResidualBlockId> measured_distances_;
 };
 
 }  // namespace pliant

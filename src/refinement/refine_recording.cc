@@ -21,18 +21,9 @@ constexpr int kRounds = 2;  // solutions of few views, each with the sigmas and 
 constexpr int kFewViewsPerTrack = 15;      // of the median track, in these; with all of them follows one more solution
 constexpr double kUsualIterations = 10.0;  // of a solution
 constexpr double kMinShapeSigma = 0.002;   // below it a scene moves by less than its noise
-// (F7) Of distances that were measured.
-constexpr double kMinMeasuredSigma = 0.002;
-constexpr double kMaxMeasuredSigma = 0.1;
 constexpr double kMinWrongTrackPx = 0.5;
 constexpr int kRankStep = 2;
 constexpr double kSignificant = 2.0;  // times its standard error: then a correlation asks for more shapes
-
-// About zero, by the median.
-double Sigma(std::vector<double> errors) {
-  for (double& error : errors) error = std::abs(error);
-  return kMedianToSigma * Median(errors);
-}
 
 // Of a solution for every so many views, up to a factor: the square of the numbers of a point in each of them.
 double WorkOf(int rank, int stride) { return (1.0 + rank) * (1.0 + rank) / stride; }
@@ -195,8 +186,8 @@ class Refinement {
     const auto errors_px = ReprojectionErrors(input_.camera, start_, state);
     input_.sigmas.noise_px = NoisePx(errors_px, used);
     refined_.noise_px = input_.sigmas.noise_px;
-    if (const auto errors = MeasuredDistanceErrors(start_, used, state, input_.distance); !errors.empty())
-      input_.sigmas.measured_log_distance = std::clamp(Sigma(errors), kMinMeasuredSigma, kMaxMeasuredSigma);
+    if (auto errors = MeasuredDistanceErrors(start_, used, state, input_.distance); !errors.empty())
+      input_.sigmas.measured_log_distance = MeasuredSigma(std::move(errors));
     if (state.rank() == 0) return;
     const ShapeSizes sizes = SizesOf(state.nodes);
     input_.sigmas.size = std::max(kMinShapeSigma, sizes.size / input_.distance);

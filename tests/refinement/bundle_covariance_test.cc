@@ -182,6 +182,31 @@ TEST_P(BundleCovarianceTest, TheUnitIsKnown) {
   EXPECT_NEAR(center_sigma(*without_unit) / center_sigma(*covariance), 1, 0.1);
 }
 
+TEST_P(BundleCovarianceTest, SaysWhatTheSolutionLeavesOfMeasuredDistances) {
+  start_.measured_view_idx = 5;
+  const BundleProblem problem(input_, &state_);
+  const auto residuals = MeasuredResiduals(problem);
+  ASSERT_TRUE(residuals.ok()) << residuals.status().message();
+  ASSERT_EQ(residuals->size(), problem.measured_distances().size());
+  ASSERT_GT(residuals->size(), 50U);
+  const Variables variables(problem);
+  const Eigen::LLT<Eigen::MatrixXd> normal(variables.Normal());
+  for (std::size_t k = 0; k < residuals->size(); k += 25) {
+    const ceres::ResidualBlockId term = problem.measured_distances()[k];
+    std::vector<double*> blocks;
+    problem.terms().GetParameterBlocksForResidualBlock(term, &blocks);
+    const auto residual = [&] {
+      double value = 0;
+      EXPECT_TRUE(problem.terms().GetCostFunctionForResidualBlock(term)->Evaluate(blocks.data(), &value, nullptr));
+      return value;
+    };
+    EXPECT_EQ((*residuals)[k].residual, residual());
+    const Eigen::VectorXd gradient = variables.Gradient(residual, blocks);
+    const double taken = gradient.dot(normal.solve(gradient));
+    EXPECT_NEAR((1 - (*residuals)[k].left_share) / taken, 1, 2 * kSampled) << k;  // variances: twice as far off
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, BundleCovarianceTest, testing::Values(0.0, 4.0));
 
 }  // namespace

@@ -289,6 +289,28 @@ TEST(RefineRecording, MeasuredDistancesHoldTheSceneAndItsUnit) {
   EXPECT_GT(error_in_view(free->recording), 0.01);
 }
 
+// Pixels know little of the depths, and the solution goes along with the errors of what was measured.
+TEST(RefineRecording, KnowsOfTheErrorsOfMeasuredDistancesThatItHasTakenUp) {
+  RecordedScene scene(0);
+  for (Rigid3& pose : scene.poses) pose.translation *= 0.02;
+  Recording start = scene.Start(0.1);  // off by 4 %
+  start.measured_view_idx = 7;
+  const auto refined = Refine(start);
+  ASSERT_TRUE(refined.ok()) << refined.status().message();
+  const std::vector<double> errors = scene.LogDistanceErrors(refined->recording);
+  std::vector<double> normalized;
+  for (std::size_t o = 0; o < errors.size(); ++o) {
+    if (!refined->is_inlier[o]) continue;
+    const RecordedObservation& seen = refined->recording.observations[o];
+    const Rigid3& pose = refined->recording.cams_from_world[static_cast<std::size_t>(seen.view_idx)];
+    normalized.push_back(errors[o] * (pose * seen.position).norm() / refined->sigmas[o]);
+  }
+  ASSERT_GT(normalized.size(), errors.size() / 2);
+  const double ratio = Rms(normalized);
+  EXPECT_GT(ratio, 0.6);
+  EXPECT_LT(ratio, 1.6);
+}
+
 // Wrong ones do not.
 TEST(RefineRecording, WronglyMeasuredDistancesGiveWayToPixels) {
   const RecordedScene scene(0);
