@@ -144,6 +144,22 @@ TEST(WindowCamera, TakesNoPokeForAMotionOfTheCamera) {
   }
 }
 
+// Whatever depths lack, the window says whether it may be that the camera moves.
+TEST(WindowCamera, WithoutAMapItSaysWhetherTheCameraMayStandStill) {
+  WindowInitOptions options;
+  options.certain_depth_sigma = options.last_depth_sigma = options.max_depth_sigma = 1e-4;
+  options.provisional = Switch::kOff;
+  const InitOutcome still = PokedWall(61).Try(options);
+  ASSERT_EQ(still.decision, InitDecision::kNewReference) << still.reason;
+  EXPECT_TRUE(still.camera_may_stand_still) << still.reason;
+  EXPECT_FALSE(still.ambiguous) << "there would be no map if it moved";
+  EXPECT_THAT(still.reason, HasSubstr("camera and scene cannot be told apart"));
+  const InitOutcome moving = WavingTracks(61).Try(options);
+  ASSERT_EQ(moving.decision, InitDecision::kNewReference) << moving.reason;
+  EXPECT_FALSE(moving.camera_may_stand_still);
+  EXPECT_THAT(moving.reason, HasSubstr("points is known to"));
+}
+
 TEST(WindowCamera, ARigidMotionThatExplainsLittleMakesNoMapOfAFlatScene) {
   const WavingTracks plane(36, CameraPath::kForwards, 0, 0);
   const InitInput input{plane.camera, plane.frames, {}};

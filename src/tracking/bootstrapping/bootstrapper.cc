@@ -48,7 +48,7 @@ BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, 
   if (!HasReference()) {
     BootstrapStep step = TakeReference(frame, submap, times);
     const bool is_refused = std::ranges::find(step.events, TrackingEvent::kTooFewCorners) != step.events.end();
-    if (is_refused && !step.map && !given_up_.empty()) step.note = given_up_ + "; " + step.note;
+    if (is_refused && !step.map && given_up_.frames > 0) step.note = given_up_.reason + "; " + step.note;
     return step;
   }
   if (submap->IsBlurred(frame, options_, tracks_->abilities())) {
@@ -79,7 +79,7 @@ BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* su
       tracks_->abilities().adds_always ? std::min(kFewestPoints, options_.min_corners) : options_.min_corners;
   if (step.tracked < needed) {
     step.events = {TrackingEvent::kTooFewCorners};
-    step.note = WithFault((given_up_.empty() ? "no reference yet: " : "no reference since then: ") +
+    step.note = WithFault((given_up_.frames == 0 ? "no reference yet: " : "no reference since then: ") +
                               NumberOfPoints(step.tracked) + ", of at least " + std::to_string(needed),
                           ImageFault(frame, submap->previous.gray));
     GiveUpReference(&step);
@@ -218,7 +218,7 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
       break;
     case InitDecision::kNewReference:
       TellAmbiguity(outcome, step);
-      given_up_ = outcome.reason;
+      if (frames_.size() >= given_up_.frames) given_up_ = {frames_.size(), outcome.reason};
       doubts_.was_ambiguous |= outcome.ambiguous;
       GiveUpReference(step);
       break;
@@ -227,16 +227,15 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
 
 // Of a reference that is given up.
 void Bootstrapper::TellAmbiguity(const InitOutcome& outcome, BootstrapStep* step) const {
-  if (!outcome.ambiguous) return;
+  if (!outcome.ambiguous && !(outcome.camera_may_stand_still && waiting_.IsEmpty())) return;
   step->ambiguity = outcome.reason;
   step->ambiguous_since_frame_idx = frames_.front().frame_idx;
 }
 
 void Bootstrapper::TakeAlternative(const Answer& answer) {
-  if (answer.outcome.ambiguous) {  // what is less certain, or takes more for granted, is no answer then
-    waiting_.Doubt(answer.outcome.camera_may_stand_still);
-    ForgetAlternative();
-  }
+  // What is less certain, or takes more for granted, is no answer then.
+  if (answer.outcome.ambiguous) waiting_.Doubt(answer.outcome.camera_may_stand_still);
+  if (answer.outcome.ambiguous || answer.outcome.camera_may_stand_still) ForgetAlternative();
   doubts_.camera_may_stand_still |= answer.outcome.camera_may_stand_still;
   if (!answer.alternative || answer.alternative->decision != InitDecision::kMap || AlternativeToAsk() == nullptr)
     return;
@@ -321,7 +320,7 @@ void Bootstrapper::FinishMap(FirstMap map, BootstrapStep* step) {
     if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
   waiting_.DropAll();
   doubts_ = {};
-  given_up_.clear();
+  given_up_ = {};
   ForgetAlternative();
   map.outcome.decision = InitDecision::kMap;
   oracle_poses_->TakeWorld({camera_, map.frames, {}}, &map.outcome);
@@ -352,11 +351,11 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   }
   PreparedFrame last;
   last.frame_idx = frames_.back().frame_idx;
-  // What a reference in the last image lacks says less than why the one before was given up.
-  const std::string before = frames_.size() == 1 && !given_up_.empty() ? given_up_ + "; " : "";
   const auto alternative = waiting_.IsEmpty() ? AlternativeToAsk() : nullptr;
   Answer answer = AskInitializers(frames_, {}, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
-  step.note = WithFault(before + answer.outcome.reason, image_fault_);
+  // What a reference of the last few images lacks says less than why one that lasted longer was given up.
+  const bool says_less = frames_.size() < given_up_.frames && !answer.outcome.ambiguous;
+  step.note = WithFault(says_less ? given_up_.reason : answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
   waiting_.EndWait();
   if (answer.outcome.decision == InitDecision::kNewReference) TellAmbiguity(answer.outcome, &step);
@@ -370,7 +369,7 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
 void Bootstrapper::Abandon() {
   DropReference();
   waiting_.DropAll();
-  given_up_.clear();
+  given_up_ = {};
 }
 
 void Bootstrapper::DropReference() {
@@ -468,6 +467,7 @@ void Bootstrapper::Serialize(StateArchive& archive) {
   archive(has_map_, frames_, known_depths_, image_fault_, waiting_, doubts_, would_start_, last_reason_, given_up_,
           answers_);
 }
+void Bootstrapper::GivenUp::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 void Bootstrapper::Doubts::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 void Bootstrapper::Answer::Serialize(StateArchive& archive) { archive.Members<4>(*this); }
 

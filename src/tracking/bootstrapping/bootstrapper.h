@@ -89,6 +89,12 @@ class Bootstrapper {
     bool was_ambiguous = false;           // when an earlier reference was given up, since the last map
     void Serialize(StateArchive& archive);
   };
+  // The reference that lasted longest of those that were given up since the last map: what it lacked says most.
+  struct GivenUp {
+    std::size_t frames = 0;  // 0: none was given up
+    std::string reason = {};
+    void Serialize(StateArchive& archive);
+  };
   // What the initializers say of the frames up to one of them.
   struct Answer {
     std::size_t frames = 0;  // since the reference
@@ -139,8 +145,8 @@ class Bootstrapper {
   WaitingMaps waiting_;               // provisional ones
   Doubts doubts_;
   std::string would_start_;
-  std::string last_reason_;         // of the last answer
-  std::string given_up_;            // why the last reference was, since the last map; empty: none was
+  std::string last_reason_;  // of the last answer
+  GivenUp given_up_;
   DelayedAnswers<Answer> answers_;  // steps: the number of frames since the reference; ends before what it reads
 };
 

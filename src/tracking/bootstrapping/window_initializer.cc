@@ -11,6 +11,7 @@
 #include "pliant/base/text.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
+#include "tracking/bootstrapping/camera_motion_check.h"
 #include "tracking/bootstrapping/focal_length_check.h"
 #include "tracking/bootstrapping/initial_map.h"
 #include "tracking/bootstrapping/rotation_check.h"
@@ -171,10 +172,23 @@ class WindowInitializer final : public Initializer {
     return status;
   }
 
-  // A sequence may end so early that its map must be certain all the same.
   Status LastAttempt(const InitInput& input, InitOutcome* outcome) const {
-    const auto since = static_cast<int>(input.frames.size()) - 1;
     const auto window = SolveWindow(input, input.frames.size(), WindowScene::kAny, options_, nominal_depth_mm_);
+    Status status = LastMap(input, window, outcome);
+    if (status.ok() || !window.ok() || outcome->ambiguous) return status;
+    // What its depths lack may be that the camera moves.
+    InitOutcome asked;
+    asked.measured = outcome->measured;
+    Status motion = CheckCameraMotion(input, *window, options_, &asked);
+    if (motion.ok() || !asked.camera_may_stand_still) return status;
+    outcome->measured.still_camera_error_ratio = asked.measured.still_camera_error_ratio;
+    outcome->camera_may_stand_still = true;
+    return motion;
+  }
+
+  // A sequence may end so early that its map must be certain all the same.
+  Status LastMap(const InitInput& input, const Result<SolvedWindow>& window, InitOutcome* outcome) const {
+    const auto since = static_cast<int>(input.frames.size()) - 1;
     Status status = Make(input, window, LastDemands(since), outcome);
     if (status.ok() || outcome->ambiguous) return status;
     // Where the depths hardly stand out, those of fewer frames do so by chance.

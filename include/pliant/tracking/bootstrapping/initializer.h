@@ -137,7 +137,7 @@ struct InitOutcome {
   std::string reason;  // one sentence with its numbers; of a map too
   InitMeasurements measured;
   bool ambiguous = false;               // no map, since a camera that stands still explains the images too
-  bool camera_may_stand_still = false;  // it explains them as well but for chance
+  bool camera_may_stand_still = false;  // it explains them as well but for chance, whatever there is no map for
   bool moves_by_depth = false;          // the depths alone show that the camera moves (W18)
 
   // Filled in for kMap and kProvisional; `deforming` also where a rigid scene was asked for and it is none.
