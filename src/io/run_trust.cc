@@ -262,13 +262,18 @@ std::string OfCoverage(const RunSummary& summary) {
   return text + ".";
 }
 
-// By the map that has the most parallax of those whose depths are hardly known.
-std::string AdviceOnDepth(const RunSummary& summary) {
-  if (IsRefined(summary)) return {};
+// The most parallax of the maps whose depths are hardly known; negative: there is none.
+double ParallaxOfUncertainMaps(const RunSummary& summary) {
   double parallax_deg = -1.0;
+  if (IsRefined(summary)) return parallax_deg;
   for (const FirstMapFrames& map : summary.first_maps)
     if (HasMeasuredDepth(map.evidence) && !IsDepthKnown(map.evidence))
       parallax_deg = std::max(parallax_deg, map.evidence.median_parallax_deg);
+  return parallax_deg;
+}
+
+std::string AdviceOnDepth(const RunSummary& summary) {
+  const double parallax_deg = ParallaxOfUncertainMaps(summary);
   if (parallax_deg < 0.0) return {};
   return (parallax_deg < kEnoughParallaxDeg
               ? std::string("Depth needs more parallax: move the camera sideways, and further by the distance of the "
@@ -297,12 +302,15 @@ std::string Advice(const RunSummary& summary) {
                                      : ", or let pliant refine estimate its focal length where the scene is rigid."));
   if (FramesIn(summary, TrackingState::kLost) > 0)
     advice.emplace_back("Where the map was lost, look for tools, smoke and fast motion; a mask over tools helps.");
-  if (summary.median_coverage > 0.0 && summary.median_coverage < kMinCoverage)
-    advice.emplace_back(summary.median_followed_coverage < kMinCoverage
-                            ? "Much of the scene has no point: raise --Corners.max_corners, or check the mask."
-                            : "Much of the scene has points whose depth is not certain: move the camera sideways.");
+  if (summary.median_coverage > 0.0 && summary.median_followed_coverage < kMinCoverage)
+    advice.emplace_back("Much of the scene has no point: raise --Corners.max_corners, or check the mask.");
+  else if (summary.median_coverage > 0.0 && summary.median_coverage < kMinCoverage &&
+           ParallaxOfUncertainMaps(summary) < kEnoughParallaxDeg)
+    advice.emplace_back("Much of the scene has points whose depth is not certain: move the camera sideways.");
   const std::int64_t explained = summary.frames_tracked + FramesIn(summary, TrackingState::kWaitingForReference);
-  if (static_cast<double>(explained) < kMinFrameShare * static_cast<double>(summary.frames_read) &&
+  // A run without any says in its note what the references lacked.
+  if (summary.frames_tracked > 0 &&
+      static_cast<double>(explained) < kMinFrameShare * static_cast<double>(summary.frames_read) &&
       FramesIn(summary, TrackingState::kAmbiguous) == 0)
     advice.emplace_back("Where there is no map, the camera moved too little or the points lasted too briefly.");
   if (const std::string on_skipped = AdviceOnSkippedImages(summary); !on_skipped.empty())

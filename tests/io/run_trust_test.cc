@@ -136,6 +136,14 @@ TEST(RunTrust, ImagesThatShowTooLittleAreNoLackOfMotion) {
   EXPECT_THAT(Trust(summary).at("advice"), HasSubstr("the camera moved too little"));
 }
 
+TEST(RunTrust, OfARunWithoutAMapTheNoteSaysWhatWasMissing) {
+  RunSummary summary = Summary(kKnown);
+  summary.frames_tracked = 0;
+  summary.first_maps.clear();
+  summary.states = {{TrackingState::kInitializing, 100}};
+  EXPECT_THAT(Trust(summary), Not(Contains(Key("advice"))));
+}
+
 TEST(RunTrust, ALiveRunWithoutAMapSaysHowManyImagesWereSkipped) {
   RunSummary summary = Summary(kKnown);
   summary.description.input = "/runs/or_recording";
@@ -228,7 +236,10 @@ TEST(RunTrust, WhereParallaxIsThereOtherCausesAreNamed) {
   FirstMapEvidence flat = kKnown;
   flat.depth_spread = 0.02;
   flat.median_parallax_deg = 25;
-  const std::string advice = Trust(Summary(flat)).at("advice");
+  RunSummary summary = Summary(flat);
+  summary.median_coverage = 0.3;
+  summary.median_followed_coverage = 0.8;
+  const std::string advice = Trust(summary).at("advice");
   EXPECT_THAT(advice, Not(HasSubstr("sideways")));
   EXPECT_THAT(advice, HasSubstr("Parallax is not what is missing: check the calibration, mask"));
 }
