@@ -31,6 +31,7 @@ constexpr double kNeighborQuantile = 0.8;  // of their changes
 constexpr double kRepeatedShare = 0.15;  // of that change: below it an image is repeated; re-encoding leaves up to 0.1
 constexpr double kLightOffShare = 0.2;   // of the recording's median level
 constexpr int kMinRepeated = 3;
+constexpr int kMaxConvertedRow = 15;        // from 4 to 60 images a second; what is longer stands still
 constexpr double kMinRepeatedShare = 0.05;  // of the images; fewer are single dropped frames
 
 constexpr double kUnevenFactor = 1.5;  // of the median step
@@ -57,11 +58,12 @@ std::string ShareText(int part, int all, const char* what) {
 struct Change {
   double mean = 0;
   double median = 0;
-  double level = 0;  // mean of the darker image
-  void Serialize(StateArchive& archive) { archive.Members<3>(*this); }
+  double level = 0;   // mean of the darker image
+  int frame_idx = 0;  // of the later image
+  void Serialize(StateArchive& archive) { archive.Members<4>(*this); }
 };
 
-Change ChangeBetween(const cv::Mat& a, const cv::Mat& b) {
+Change ChangeBetween(const cv::Mat& a, const cv::Mat& b, int frame_idx) {
   cv::Mat difference;
   cv::absdiff(a, b, difference);
   std::array<std::size_t, 256> counts{};
@@ -70,7 +72,7 @@ Change ChangeBetween(const cv::Mat& a, const cv::Mat& b) {
   std::size_t below = 0;
   std::size_t median = 0;
   while (below + counts[median] <= difference.total() / 2) below += counts[median++];
-  return {cv::mean(difference)[0], static_cast<double>(median), std::min(cv::mean(a)[0], cv::mean(b)[0])};
+  return {cv::mean(difference)[0], static_cast<double>(median), std::min(cv::mean(a)[0], cv::mean(b)[0]), frame_idx};
 }
 
 // Mean levels and changes of the two sides of masks, summed over samples.
@@ -103,10 +105,17 @@ std::vector<Change> LitChanges(const std::vector<Change>& changes) {
   return lit;
 }
 
-void JudgeRepeated(const std::vector<Change>& changes, ImageCheck* check) {
+// Images in a row that show what the one before shows.
+struct RepeatedRow {
+  int first_frame_idx = 0;
+  int last_frame_idx = 0;
+  int images = 0;
+};
+
+std::vector<RepeatedRow> RepeatedRows(const std::vector<Change>& changes) {
   const int pairs = static_cast<int>(changes.size());
-  int in_a_row = 0;
-  int most_in_a_row = 0;
+  std::vector<RepeatedRow> rows;
+  bool follows = false;
   for (int k = 0; k < pairs; ++k) {
     std::vector<double> means;
     std::vector<double> medians;
@@ -117,17 +126,46 @@ void JudgeRepeated(const std::vector<Change>& changes, ImageCheck* check) {
     const Change& change = changes[static_cast<std::size_t>(k)];
     const bool is_repeated = change.mean <= kRepeatedShare * Quantile(std::move(means), kNeighborQuantile) &&
                              change.median <= kRepeatedShare * Quantile(std::move(medians), kNeighborQuantile);
-    in_a_row = is_repeated ? in_a_row + 1 : 0;
-    most_in_a_row = std::max(most_in_a_row, in_a_row);
-    if (is_repeated) ++check->repeated;
+    if (is_repeated && !follows) rows.push_back({change.frame_idx, change.frame_idx, 0});
+    follows = is_repeated;
+    if (!is_repeated) continue;
+    rows.back().last_frame_idx = change.frame_idx;
+    ++rows.back().images;
   }
-  const int images = pairs + 1;
-  if (check->repeated < kMinRepeated || check->repeated < kMinRepeatedShare * images) return;
-  const double share = static_cast<double>(check->repeated) / images;
+  return rows;
+}
+
+// A slide, or a recording that stood still.
+void JudgeStill(const std::vector<RepeatedRow>& rows, ImageCheck* check) {
+  const auto longest = std::ranges::max_element(rows, {}, &RepeatedRow::images);
+  if (longest == rows.end() || longest->images <= kMaxConvertedRow) return;
+  check->wrong.push_back("the image stands still from frame " + std::to_string(longest->first_frame_idx - 1) + " to " +
+                         std::to_string(longest->last_frame_idx) +
+                         ", as a slide or a recording that froze does, and nothing is tracked across it; give a part "
+                         "without it (--start, --end)");
+}
+
+void JudgeRepeated(const std::vector<Change>& changes, ImageCheck* check) {
+  const std::vector<RepeatedRow> rows = RepeatedRows(changes);
+  JudgeStill(rows, check);
+  int images = static_cast<int>(changes.size()) + 1;
+  int repeated = 0;
+  int most_in_a_row = 0;
+  for (const RepeatedRow& row : rows) {
+    check->repeated += row.images;
+    if (row.images > kMaxConvertedRow) {
+      images -= row.images;
+    } else {
+      repeated += row.images;
+      most_in_a_row = std::max(most_in_a_row, row.images);
+    }
+  }
+  if (repeated < kMinRepeated || repeated < kMinRepeatedShare * images) return;
+  const double share = static_cast<double>(repeated) / images;
   const int period = static_cast<int>(std::lround(1 / std::max(1 - share, 0.01)));
   const bool every_nth = period >= 2 && most_in_a_row < period && std::abs(share - (1 - 1.0 / period)) < 0.03;
   check->wrong.push_back(
-      ShareText(check->repeated, images, "images") +
+      ShareText(repeated, images, "images") +
       " repeat the one before: the video was converted to a higher rate, or images were lost in recording, and points "
       "seem to stop and then jump; " +
       (every_nth ? "give --stride " + std::to_string(period) + ", or convert the original at its own rate"
@@ -263,7 +301,7 @@ void ImageChecker::Add(const SequenceFrame& frame) {
   const cv::Mat gray = ToGray(frame.image);
   if (state.images == 0) state.step = std::max(1, gray.cols / kGridColumns);
   cv::Mat grid = GridOf(gray, state.step);
-  if (state.images > 0) state.changes.push_back(ChangeBetween(state.last, grid));
+  if (state.images > 0) state.changes.push_back(ChangeBetween(state.last, grid, frame.frame_idx));
   state.last = std::move(grid);
   state.AddTime(frame.recorded_s);
   if (state.images % state.sample_every == 0) state.AddSample(gray, frame.mask);
