@@ -127,4 +127,25 @@ bool ParseInt64(std::string_view text, std::int64_t* value) { return ParseWhole(
 
 bool ParseUint64(std::string_view text, std::uint64_t* value) { return ParseWhole(text, value); }
 
+bool IsUtf8(std::string_view text) {
+  // By the bytes that follow the first one: the least code point that needs so many.
+  static constexpr std::array<std::uint32_t, 4> kLeast = {0, 0x80, 0x800, 0x10000};
+  for (std::size_t i = 0; i < text.size();) {
+    const auto first = static_cast<unsigned char>(text[i++]);
+    const int ones = std::countl_one(first);
+    if (ones == 0) continue;
+    if (ones == 1 || ones > 4) return false;
+    std::uint32_t code = first & (0x7FU >> ones);
+    for (int k = 1; k < ones; ++k) {
+      if (i == text.size()) return false;
+      const auto next = static_cast<unsigned char>(text[i++]);
+      if (std::countl_one(next) != 1) return false;
+      code = code << 6U | (next & 0x3FU);
+    }
+    const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
+    if (code < kLeast[static_cast<std::size_t>(ones - 1)] || is_surrogate || code > 0x10FFFF) return false;
+  }
+  return true;
+}
+
 }  // namespace pliant

@@ -91,12 +91,16 @@ Result<std::vector<fs::path>> ListImages(const fs::path& folder, CompanionKind k
   if (images.empty())
     return Status(ErrorCode::kNotFound,
                   "the folder " + folder.string() + " holds no image (" + ListText(endings) + "); check the path");
-  // Names are written into lines of text files, COLMAP's among them.
-  if (std::any_of(images.begin(), images.end(), [](const fs::path& image) {
-        return image.filename().string().find_first_of("\n\r") != std::string::npos;
-      }))
-    return Status(ErrorCode::kInvalidArgument,
-                  "the folder " + folder.string() + " holds an image whose name has a line break; rename it");
+  // Names are written into lines of text files, COLMAP's among them, and into JSON.
+  for (const fs::path& image : images) {
+    const std::string name = image.filename().string();
+    if (name.find_first_of("\n\r") != std::string::npos)
+      return Status(ErrorCode::kInvalidArgument,
+                    "the folder " + folder.string() + " holds an image whose name has a line break; rename it");
+    if (!IsUtf8(name))
+      return Status(ErrorCode::kInvalidArgument, "the folder " + folder.string() + " holds an image whose name, " +
+                                                     Quoted(name) + ", is not UTF-8; rename it");
+  }
   std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
     return NaturalLess(a.filename().string(), b.filename().string());
   });

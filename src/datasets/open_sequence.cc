@@ -20,6 +20,10 @@ Result<const DataSetFormat*> FormatAt(const std::filesystem::path& path) {
   if (path.empty() || !std::filesystem::exists(path, error))
     return Status(ErrorCode::kNotFound, "there is nothing at the image path '" + path.string() +
                                             "'; give a folder of images, a video or a sequence");
+  // It is written into run.json.
+  if (!IsUtf8(std::filesystem::absolute(path, error).string()))
+    return Status(ErrorCode::kInvalidArgument,
+                  "the image path '" + path.string() + "' is not UTF-8; rename it, or the folder that holds it");
   for (const DataSetFormat& format : DataSetFormats())
     if (format.is_at(path)) return &format;
   if (const std::string name = path.string(); name.starts_with(kVideoDevice))

@@ -19,5 +19,22 @@ TEST(ParseNumbers, RefusesWhatIsNoFiniteNumber) {
   EXPECT_EQ(ParseNumbers("")->size(), 0U);
 }
 
+TEST(IsUtf8, TakesCharactersOfOneToFourBytes) {
+  for (const char* text : {"", "frame 01.png", "f\xC3\xA4lle", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "\xED\x9F\xBF",
+                           "\xEE\x80\x80", "\xF4\x8F\xBF\xBF"})
+    EXPECT_TRUE(IsUtf8(text)) << text;
+}
+
+TEST(IsUtf8, RefusesOtherBytes) {
+  const std::vector<const char*> texts = {
+      "f\xE4lle",                                    // ISO 8859-1
+      "a\x80", "\xC3", "\xE2\x82", "\xC3(",         // without a first or a following byte
+      "\xC0\xAF", "\xE0\x80\xAF", "\xF0\x80\x80\xAF",  // not the shortest form
+      "\xED\xA0\x80", "\xED\xBF\xBF",               // surrogates
+      "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80",    // beyond U+10FFFF
+  };
+  for (const char* text : texts) EXPECT_FALSE(IsUtf8(text)) << text;
+}
+
 }  // namespace
 }  // namespace pliant

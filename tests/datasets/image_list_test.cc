@@ -33,5 +33,13 @@ TEST(ListImages, RefusesNamesThatDoNotFitIntoALine) {
   EXPECT_TRUE(ListImages(folder.Path("")).ok());
 }
 
+TEST(ListImages, RefusesNamesThatAreNotUtf8) {
+  const TemporaryFolder folder("images");
+  for (const char* name : {"a.png", "b\xE4ld.png"}) std::ofstream(folder.Path(name)) << "x";
+  const auto images = ListImages(folder.Path(""));
+  ASSERT_FALSE(images.ok());
+  EXPECT_NE(images.status().message().find("is not UTF-8; rename it"), std::string::npos) << images.status().message();
+}
+
 }  // namespace
 }  // namespace pliant

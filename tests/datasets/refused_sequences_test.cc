@@ -26,6 +26,11 @@ TEST_F(OpenSequenceTest, RefusesWhatIsNotThere) {
   ExpectRefused(Request("scan"), ErrorCode::kNotFound, "camera.yaml");
 }
 
+TEST_F(OpenSequenceTest, RefusesPathsThatAreNotUtf8) {
+  WriteImages(2, "f\xE4lle");
+  ExpectRefused(Request("f\xE4lle"), ErrorCode::kInvalidArgument, "is not UTF-8; rename it");
+}
+
 TEST_F(OpenSequenceTest, RefusesAFileWhereAFolderBelongs) {
   WriteNative(2);
   Text("depth", "a file");

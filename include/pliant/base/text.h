@@ -62,4 +62,7 @@ bool ParseFinite(std::string_view text, double* value);
 bool ParseInt64(std::string_view text, std::int64_t* value);
 bool ParseUint64(std::string_view text, std::uint64_t* value);
 
+// Whether it is UTF-8 (RFC 3629: the shortest form of each character, no surrogates), as JSON and COLMAP's files are.
+bool IsUtf8(std::string_view text);
+
 }  // namespace pliant
