@@ -64,9 +64,9 @@ Status CheckBeside(const std::string& path, const std::string& name, const NpyAr
                                       "; it has to be (frames, points)"};
 }
 
-// Of scores nobody says from which value on a point is seen.
+// Of scores nobody says from which value on a point is seen, and of codes, as 255, 2 and -1, which ones mean it.
 Status CheckVisibility(const std::string& path, const NpyArray& visibility) {
-  if (visibility.kind != NpyArray::Kind::kFloat) return Status::Ok();
+  if (visibility.kind == NpyArray::Kind::kBool) return Status::Ok();
   for (std::size_t i = 0; i < visibility.size(); ++i)
     if (const double value = visibility.At(i); value != 0.0 && value != 1.0)
       return {ErrorCode::kUnreadable, "visibility in " + path + " has the value " + FormatDouble(value) +

@@ -3,6 +3,7 @@
 
 #include "pliant/io/track_file.h"
 
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -234,6 +235,11 @@ INSTANTIATE_TEST_SUITE_P(
         WrongTracks{"ScoresAsVisibility", "a.npz",
                     Npz(Tracks(), NpyFile("<f8", "3, 2", BytesOf<double>({1, 1, 1, 0, 0.25, 1}))),
                     "has the value 0.25, which is neither 0 nor 1; save bools"},
+        WrongTracks{"MaskAsVisibility", "a.npz", Npz(Tracks(), NpyFile("|u1", "3, 2", {1, 1, 1, 0, '\xff', 1})),
+                    "has the value 255, which is neither 0 nor 1; save bools"},
+        WrongTracks{"CodesAsVisibility", "a.npz",
+                    Npz(Tracks(), NpyFile("<i4", "3, 2", BytesOf<std::int32_t>({1, 1, 1, -1, 1, 1}))),
+                    "has the value -1, which is neither 0 nor 1; save bools"},
         WrongTracks{"BigEndian", "a.npz", Npz(TracksAs(">f4", "3, 2, 2"), Visibility()), "is big-endian"},
         WrongTracks{"HalfPrecision", "a.npz", Npz(TracksAs("<f2", "3, 2, 2"), Visibility()), "of the type <f2"},
         WrongTracks{"Objects", "a.npy", TracksAs("|O", "3, 2, 2"), "holds Python objects"},

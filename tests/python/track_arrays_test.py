@@ -112,6 +112,8 @@ class Arrays(TestCase):
                 (pliant.Error, "it has to be (frames, points, 2) with x before y", (tracks[0], seen[0])),
                 (pliant.Error, "has the value 0.75, which is neither 0 nor 1; save bools, for example visibility > 0.5",
                  (tracks, np.where(seen, 0.75, 0))),
+                (pliant.Error, "has the value -1, which is neither 0 nor 1; save bools, for example visibility > 0.5",
+                 (np.nan_to_num(tracks), np.where(seen, 1, -1))),
                 (pliant.Error, "no pixel of the given tracks is in the image with a sigma_px of",
                  {"tracks": tracks, "visibility": seen, "sigma_px": np.full(seen.shape, 9.0)}),
                 (ValueError, "the tracks have the arrays points, occluded; name them",
