@@ -15,10 +15,12 @@ namespace {
 Result<Imported> FromKitti(const std::string& path, const Sequence& sequence) {
   const auto poses = ReadKittiPoses(path);
   if (!poses.ok()) return poses.status();
-  if (poses->size() > static_cast<std::size_t>(sequence.size()))
-    return Status(ErrorCode::kMismatch, Quoted(path) + " has " + std::to_string(poses->size()) +
-                                            " poses, a line a frame, and the sequence has " +
-                                            std::to_string(sequence.size()) + " frames");
+  // A system that leaves lost frames out does not say which ones: all lines behind them would belong to other frames.
+  if (poses->size() != static_cast<std::size_t>(sequence.size()))
+    return Status(ErrorCode::kMismatch,
+                  Quoted(path) + " has " + std::to_string(poses->size()) +
+                      " poses, a line a frame, and the sequence has " + std::to_string(sequence.size()) +
+                      " frames; give a camera path with times (--format tum), which says the frame of each pose");
   Imported imported;
   for (std::size_t i = 0; i < poses->size(); ++i)
     imported.frames.emplace(static_cast<int>(i), ImportedFrame{(*poses)[i].Inverse(), {}});

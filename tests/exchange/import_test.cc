@@ -270,7 +270,9 @@ TEST_F(ImportTest, ATruthNeedsAPoseForEveryImage) {
 TEST_F(ImportTest, CameraPathsOfOtherSystemsComeToTheirFrames) {
   folder_.Write("tum.txt", "# a comment\n0.0404 1 2 3 0 0 0 1\n0.118 4 5 6 0 0 0 1\n9 0 0 0 0 0 0 1\n");
   folder_.Write("euroc.csv", "#timestamp [ns], p, q\n40400000, 1, 2, 3, 1, 0, 0, 0, 9\n118000000,4,5,6,1,0,0,0,9\n");
-  folder_.Write("kitti.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n");
+  std::string kitti = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  for (int i = 1; i < kImages; ++i) kitti += "0 -1 0 1 1 0 0 2 0 0 1 3\n";
+  folder_.Write("kitti.txt", kitti);
   ImportOptions none;
   none.unit_mm = 1e-9;
   EXPECT_EQ(ImportFrom("tum.txt", ImportFormat::kTum, none).status().code(), ErrorCode::kMismatch);
@@ -282,7 +284,7 @@ TEST_F(ImportTest, CameraPathsOfOtherSystemsComeToTheirFrames) {
     std::filesystem::remove_all(folder_.Path("out"));
     const auto summary = ImportFrom(file, format, meters);
     ASSERT_TRUE(summary.ok()) << summary.status().message();
-    EXPECT_EQ(summary->frames, 2) << file;
+    EXPECT_EQ(summary->frames, format == ImportFormat::kKitti ? kImages : 2) << file;
     EXPECT_EQ(summary->points, 0);
     EXPECT_EQ(summary->notes.size(), format == ImportFormat::kTum ? 1U : 0U);
     const pliant::Run run = ReadOut();
@@ -359,10 +361,18 @@ TEST_F(ImportTest, DamagedCameraPathsAreNamedByLine) {
   }
   folder_.Write("path", "");
   EXPECT_EQ(ImportFrom("path", ImportFormat::kTum).status().code(), ErrorCode::kInsufficient);
-  std::string long_path;
-  for (int i = 0; i < kImages + 1; ++i) long_path += "1 0 0 0 0 1 0 0 0 0 1 0\n";
-  folder_.Write("path", long_path);
-  EXPECT_EQ(ImportFrom("path", ImportFormat::kKitti).status().code(), ErrorCode::kMismatch);
+}
+
+TEST_F(ImportTest, ACameraPathWithoutTimesHasALineForEveryFrame) {
+  for (const int poses : {kImages - 1, kImages + 1}) {
+    std::string path;
+    for (int i = 0; i < poses; ++i) path += "1 0 0 0 0 1 0 0 0 0 1 0\n";
+    folder_.Write("path", path);
+    const Status status = ImportFrom("path", ImportFormat::kKitti).status();
+    EXPECT_EQ(status.code(), ErrorCode::kMismatch);
+    EXPECT_THAT(status.message(), HasSubstr("has " + std::to_string(poses) + " poses, a line a frame"));
+    EXPECT_THAT(status.message(), HasSubstr("give a camera path with times (--format tum)"));
+  }
 }
 
 TEST_F(ImportTest, AnotherSystemsResultBecomesARunThatIsExported) {

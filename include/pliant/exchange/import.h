@@ -8,7 +8,7 @@
 //            frame.
 //   result   trajectory.txt (TUM) and observations.csv, as docs/formats.md describes them
 //   tum, kitti, euroc   a camera path alone (pliant/io/trajectory.h). Poses are given to frames by time, KITTI's by
-//            their line.
+//            their line, so that there has to be one a frame.
 // The world stays the other program's; only its unit is multiplied.
 #pragma once
 
