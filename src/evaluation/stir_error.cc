@@ -75,6 +75,15 @@ Result<const Points*> LabelsOf(const StirPoints& labels, const std::string& reco
                                           "; its name has to be the same in all files");
 }
 
+// What is left out would not be scored, and points that are hard to track are left out first. In space there may be
+// more tracked points: a label that one eye alone shows has a pixel and no position.
+Status CheckIsComplete(const std::string& recording, std::size_t tracked, std::size_t labelled, int dimensions) {
+  if (tracked == labelled || (dimensions == 3 && tracked > labelled)) return Status::Ok();
+  return {ErrorCode::kMismatch, "the recording " + recording + " has " + std::to_string(tracked) +
+                                    " tracked points and " + std::to_string(labelled) +
+                                    " labelled ones at its start; give the end of each of them"};
+}
+
 std::string Row(const char* name, const StirAccuracy& accuracy) {
   std::string text = FormatText("  %-10s", name);
   for (const double within : accuracy.within) text += FormatText(" %7.1f", 100 * within);
@@ -107,6 +116,9 @@ Result<StirError> ComputeStirError(const StirPoints& tracked, const StirPoints& 
     if (!at_start.ok()) return at_start.status();
     const auto at_end = LabelsOf(end, recording, "end");
     if (!at_end.ok()) return at_end.status();
+    if (Status status = CheckIsComplete(recording, points.size(), (*at_start)->size(), tracked.dimensions);
+        !status.ok())
+      return status;
     estimate.Add(NearestDistances(points, **at_end));
     null.Add(NearestDistances(**at_start, **at_end));
     ++error.recordings;

@@ -56,6 +56,9 @@ TEST(StirError, InThreeDimensionsTheThresholdsAreMillimeters) {
   const StirPoints start = Points(3, {{"a", {{0, 0, 50}}}});
   const StirPoints end = Points(3, {{"a", {{0, 0, 60}}}});
   const auto error = ComputeStirError(Points(3, {{"a", {{0, 0, 57}}}}), start, end);
+  const StirPoints more = Points(3, {{"a", {{0, 0, 57}, {5, 0, 57}}}});  // of a label that has a pixel alone
+  EXPECT_TRUE(ComputeStirError(more, start, end).ok());
+  EXPECT_EQ(ComputeStirError(start, more, end).status().code(), ErrorCode::kMismatch);
   ASSERT_TRUE(error.ok()) << error.status().message();
   EXPECT_THAT(error->thresholds, ElementsAre(2, 4, 8, 16, 32));
   EXPECT_THAT(error->estimate.within, ElementsAre(0, 1, 1, 1, 1));
@@ -71,6 +74,8 @@ TEST(StirError, SaysWhatDoesNotGoTogether) {
   EXPECT_THAT(sentence(Points(2, {{"d", {{0, 0, 0}}}}), Start(), End()),
               HasSubstr("the recording d has tracked points"));
   EXPECT_THAT(sentence(Points(2, {{"a", {{0, 0, 0}}}}), Start(), Points(2, {{"a", {}}})), HasSubstr("at its end"));
+  EXPECT_THAT(sentence(Points(2, {{"a", {{0, 0, 0}}}}), Start(), End()),
+              HasSubstr("the recording a has 1 tracked points and 2 labelled ones at its start"));
   EXPECT_THAT(sentence(Points(3, {{"a", {{0, 0, 0}}}}), Start(), End()), HasSubstr("have 3 numbers"));
   EXPECT_THAT(sentence(Points(2, {{"a", {}}}), Start(), End()), HasSubstr("no tracked points"));
 }

@@ -33,7 +33,8 @@ struct StirError {
 };
 
 // Fails with kInsufficient where no point was tracked, and with kMismatch where a recording has no labelled points at
-// its start or its end, or one file is in pixels and another one in millimeters.
+// its start or its end, or not as many tracked points as labelled ones at its start (3D: fewer), or one file is in
+// pixels and another one in millimeters.
 Result<StirError> ComputeStirError(const StirPoints& tracked, const StirPoints& start, const StirPoints& end);
 
 // The same of files. Fails also as ReadStirPoints.
