@@ -204,6 +204,34 @@ TEST(RelativePose, RotationOnlyFindsARotationAndNoTranslation) {
   EXPECT_GT(pose->num_inliers, kMinInliersSharp);
 }
 
+// Repeated, three pairs are as many as wanted, and determine no more than three.
+TEST_P(EveryRelativePose, RefusesFewPairsThatComeManyTimes) {
+  Pair pair = MakePair({.num_points = 60});
+  for (std::size_t i = 3; i < pair.rays0.size(); ++i) {
+    pair.rays0[i] = pair.rays0[i % 3];
+    pair.rays1[i] = pair.rays1[i % 3];
+  }
+  const Status status = Estimate(pair, GetParam()).status();
+  EXPECT_EQ(status.code(), ErrorCode::kDegenerate);
+  EXPECT_NE(status.message().find("only 3 of the"), std::string::npos) << status.message();
+}
+
+// Many motions with a translation explain points on a line, exact or with noise below the error that is allowed.
+TEST_P(EverySampler, RefusesPointsOnALine) {
+  Pair pair = MakePair({.num_points = 30});
+  for (const double off_px : {0.0, 0.5})
+    for (const double moved : {0.1, 0.0}) {
+      for (std::size_t i = 0; i < pair.rays0.size(); ++i) {
+        const double along = -1.0 + static_cast<double>(i) / 15.0;
+        const double off = (i % 2 == 0 ? off_px : -off_px) / pair.options.focal_px;
+        pair.rays0[i] = Eigen::Vector3d(along, off, 1).normalized();
+        pair.rays1[i] = Eigen::Vector3d(along + moved + 0.01 * along * along, off, 1).normalized();
+      }
+      const auto pose = Estimate(pair, GetParam());
+      EXPECT_FALSE(pose.ok()) << pose->num_inliers << " inliers, " << off_px << " px off, moved " << moved;
+    }
+}
+
 // With nine tenths outliers 300 samples of five pairs hold a clean one once in 300 times. A few pairs agree with any
 // motion, and the best of many motions is no answer.
 TEST_P(EverySampler, RefusesWhatItsSamplesCannotFind) {

@@ -53,6 +53,9 @@ class TwoViews(TestCase):
         with self.assertRaises(pliant.Error) as caught:
             kernels.relative_pose(self.rays0[:5], self.rays1[:5], 500)
         self.assertEqual(caught.exception.code, "insufficient")
+        with self.assertRaises(pliant.Error) as caught:
+            kernels.relative_pose(np.repeat(self.rays0[:3], 20, 0), np.repeat(self.rays1[:3], 20, 0), 500)
+        self.assertEqual(caught.exception.code, "degenerate")
         for call in (lambda: kernels.relative_pose(2 * self.rays0, self.rays1, 500),
                      lambda: kernels.relative_pose(self.rays0, self.rays1, 500, solver="nistar"),
                      lambda: kernels.relative_pose(self.rays0, self.rays1, float("nan")),

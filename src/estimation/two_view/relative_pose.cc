@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include <Eigen/Eigenvalues>
 #include <opencv2/calib3d.hpp>
 
 #include "estimation/two_view/opengv_relative_pose.h"
@@ -34,6 +38,18 @@ int CountApart(Rays rays, const Eigen::Vector3d& from) {
       rays.begin(), rays.end(), [&](const Eigen::Vector3d& ray) { return AngleBetween(ray, from) > kStillAngleRad; }));
 }
 
+// Pairs that differ from each other in a view, up to kRelativePoseMinPoints of them.
+int CountDistinct(Rays rays0, Rays rays1) {
+  std::vector<std::size_t> distinct;
+  for (std::size_t i = 0; i < rays0.size() && std::ssize(distinct) < kRelativePoseMinPoints; ++i) {
+    const bool is_known = std::ranges::any_of(distinct, [&](std::size_t k) {
+      return AngleBetween(rays0[k], rays0[i]) <= kStillAngleRad && AngleBetween(rays1[k], rays1[i]) <= kStillAngleRad;
+    });
+    if (!is_known) distinct.push_back(i);
+  }
+  return static_cast<int>(distinct.size());
+}
+
 Status CheckRays(Rays rays0, Rays rays1) {
   if (rays0.size() != rays1.size())
     return {ErrorCode::kInvalidArgument, "the two views of a relative pose have " + std::to_string(rays0.size()) +
@@ -45,11 +61,41 @@ Status CheckRays(Rays rays0, Rays rays1) {
   if (rays0.size() < static_cast<std::size_t>(kRelativePoseMinPoints))
     return {ErrorCode::kInsufficient, "a relative pose takes at least " + std::to_string(kRelativePoseMinPoints) +
                                           " correspondences; there are " + std::to_string(rays0.size())};
+  if (const int distinct = CountDistinct(rays0, rays1); distinct < kRelativePoseMinPoints)
+    return {ErrorCode::kDegenerate, "only " + std::to_string(distinct) + " of the " + std::to_string(rays0.size()) +
+                                        " correspondences differ from each other; a relative pose takes at least " +
+                                        std::to_string(kRelativePoseMinPoints)};
   for (const Rays rays : {rays0, rays1})
     if (CountApart(rays, rays.front()) + 1 < kRelativePoseMinPoints)
       return {ErrorCode::kDegenerate, "nearly all rays of a view are the same ray: they carry no relative pose"};
   if (CountApart(rays0, rays1) < kRelativePoseMinPoints)
     return {ErrorCode::kDegenerate, "the two views are the same: nothing moved between them"};
+  return Status::Ok();
+}
+
+// Whether the inliers' rays of a view may all lie in one plane through the camera: on a line of its image, as far as
+// the error of the pairs can tell. Their root mean square distance from the best plane says so.
+bool LieOnALine(Rays rays, const std::vector<char>& inliers, double max_error_rad) {
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  double count = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (inliers[i] == 0) continue;
+    scatter += rays[i] * rays[i].transpose();
+    ++count;
+  }
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues()[0];
+  return std::sqrt(std::max(0.0, least) / count) <= std::sin(max_error_rad);
+}
+
+// Points on a line agree with many motions. A rotation alone is determined by two of them.
+Status CheckSpread(Rays rays0, Rays rays1, const RelativePose& pose, double max_error_rad) {
+  if (pose.cam1_from_cam0.translation.isZero(0.0)) return Status::Ok();
+  for (const Rays rays : {rays0, rays1})
+    if (LieOnALine(rays, pose.inliers, max_error_rad))
+      return {ErrorCode::kDegenerate,
+              "the " + std::to_string(pose.num_inliers) +
+                  " correspondences that share one motion lie on a line of the image, to the error that is allowed: "
+                  "they agree with many motions; give points that are spread over the image"};
   return Status::Ok();
 }
 
@@ -189,6 +235,7 @@ Result<RelativePose> EstimateRelativePose(Rays rays0, Rays rays1, double focal_p
                   "only " + std::to_string(pose.num_inliers) + " of " + std::to_string(rays0.size()) +
                       " correspondences share one motion: so few agree by chance, and a motion that they alone "
                       "determine is hardly ever sampled");
+  if (Status status = CheckSpread(rays0, rays1, pose, max_error_rad); !status.ok()) return status;
   return pose;
 }
 

@@ -93,8 +93,9 @@ bool AgreesWithMotion(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0,
 inline constexpr int kRelativePoseMinPoints = 8;
 
 // Fails with kInvalidArgument (a ray that is not a unit vector, counts that differ), kInsufficient (too few
-// correspondences or inliers, also for so many samples to find them), kDegenerate (all rays alike in a view, or no ray
-// moves; a homography without translation).
+// correspondences or inliers, also for so many samples to find them), kDegenerate (fewer than kRelativePoseMinPoints of
+// them differ, all rays are alike in a view, or no ray moves; the inliers lie on a line of an image, to max_error_px,
+// where there is a translation; a homography without translation).
 Result<RelativePose> EstimateRelativePose(std::span<const Eigen::Vector3d> rays0,
                                           std::span<const Eigen::Vector3d> rays1, double focal_px, Random random,
                                           const RelativePoseOptions& options);
