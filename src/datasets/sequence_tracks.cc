@@ -3,12 +3,16 @@
 
 #include "pliant/datasets/sequence_tracks.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 
 #include "datasets/image_file.h"
+#include "datasets/track_scale.h"
 #include "pliant/base/text.h"
+#include "pliant/image/pyramid.h"
 #include "pliant/io/track_file.h"
 
 namespace pliant {
@@ -109,6 +113,46 @@ Status CheckPixelsInImage(const std::string& path, const Camera& camera, Sequenc
   return Status::Ok();
 }
 
+// Gray images of the part that is tracked, from the first one with a track on, up to one that cannot be read.
+std::map<int, cv::Mat> ReadImagesForScale(const SequenceRequest& request, const std::vector<PixelTrack>& tracks) {
+  constexpr std::size_t kImages = 13;  // over two seconds at 30 images a second, in which a scene moves
+  constexpr int kStride = 5;
+  SequenceRequest part = request;
+  int first = std::numeric_limits<int>::max();
+  for (const PixelTrack& track : tracks)
+    for (const TrackPixel& seen : track.pixels)
+      if (seen.visible && seen.frame_idx >= request.start) first = std::min(first, seen.frame_idx);
+  part.start = first;
+  part.stride = kStride;
+  std::map<int, cv::Mat> images;
+  const auto sequence = OpenSequence(part);
+  if (!sequence.ok()) return images;
+  while (images.size() < kImages) {
+    const auto frame = (*sequence)->Next();
+    if (!frame.ok() || !frame->has_value()) break;
+    images.emplace((*frame)->frame_idx, ToGray((*frame)->image));
+  }
+  return images;
+}
+
+// Whether the tracks follow these images, and not the same in another size.
+Status CheckScale(const std::string& path, const SequenceRequest& request, SequenceTracks* tracks) {
+  const std::map<int, cv::Mat> images = ReadImagesForScale(request, tracks->tracks);
+  const auto other = FindOtherTrackScale(tracks->tracks, images);
+  if (!other) return Status::Ok();
+  const cv::Mat& image = images.begin()->second;
+  const std::string sentence = "the pixels in " + Quoted(path) + (other->is_clear ? " fit" : " seem to fit") +
+                               " images of about " + SizeText(other->width, other->height) + " pixels, not these of " +
+                               SizeText(image) + ": patches along the tracks correlate by " +
+                               Digits(other->correlation, 2) + " then, and by " + Digits(other->given_correlation, 2) +
+                               " as they are given; multiply x by about " +
+                               Digits(static_cast<double>(image.cols) / other->width, 3) + " and y by " +
+                               Digits(static_cast<double>(image.rows) / other->height, 3);
+  if (other->is_clear) return Mismatch(sentence);
+  tracks->notes.push_back(sentence);
+  return Status::Ok();
+}
+
 }  // namespace
 
 void TrackFileOptions::List(OptionTable& table) {
@@ -159,6 +203,8 @@ Result<SequenceTracks> ReadTracksOfSequence(const TrackFileOptions& options, con
     }
   SequenceTracks tracks{std::move(file->tracks), std::move(file->notes)};
   if (Status status = CheckPixelsInImage(options.path, (*sequence)->camera(), &tracks); !status.ok()) return status;
+  if (file->images.empty())
+    if (Status status = CheckScale(options.path, request, &tracks); !status.ok()) return status;
   std::erase_if(tracks.tracks,
                 [](const PixelTrack& track) { return std::ranges::none_of(track.pixels, &TrackPixel::visible); });
   if (tracks.tracks.empty())

@@ -47,7 +47,8 @@ struct SequenceTracks {
 // have their file names. Pixels outside the image are left out and noted. Fails as ReadTrackFile and OpenSequence, and
 // with kMismatch where the file does not belong to these images: arrays of another number of frames, frames that the
 // source does not have, images of another size (a database says it; else more than a twentieth of the pixels lies
-// outside the image, or all lie in its upper left quarter).
+// outside the image, all lie in its upper left quarter, or the first images that move agree along the tracks only when
+// these are scaled; where this is likely alone, it is noted).
 Result<SequenceTracks> ReadTracksOfSequence(const TrackFileOptions& options, const SequenceRequest& request);
 
 }  // namespace pliant
