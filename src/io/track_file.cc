@@ -28,6 +28,34 @@ constexpr std::string_view kSqliteMagic = "SQLite format 3";
 
 using TrackColumns = std::array<std::size_t, kTrackColumns.size()>;
 
+// Without the blanks around it, and the quotes within these.
+std::string_view Bare(std::string_view field) {
+  const auto trimmed = [](std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) return std::string_view();
+    return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
+  };
+  field = trimmed(field);
+  if (field.size() >= 2 && field.starts_with('"') && field.ends_with('"'))
+    field = trimmed(field.substr(1, field.size() - 2));
+  return field;
+}
+
+std::vector<std::string_view> BareFields(std::string_view line) {
+  std::vector<std::string_view> fields = Split(line, ',');
+  for (std::string_view& field : fields) field = Bare(field);
+  return fields;
+}
+
+// The beginning of a line, for a message, whatever file it is of.
+std::string Shown(std::string_view line) {
+  constexpr std::size_t kMaxLength = 60;
+  std::string shown(line.substr(0, kMaxLength));
+  for (char& c : shown)
+    if (c < ' ' || c > '~') c = '?';
+  return Quoted(shown + (line.size() > kMaxLength ? "..." : ""));
+}
+
 // Where the columns stand; nothing where a needed one is missing.
 std::optional<TrackColumns> ColumnsOf(const std::vector<std::string_view>& header) {
   TrackColumns columns{};
@@ -39,6 +67,23 @@ std::optional<TrackColumns> ColumnsOf(const std::vector<std::string_view>& heade
   return columns;
 }
 
+// The name of a column that comes twice; empty: none does.
+std::string_view RepeatedColumn(const std::vector<std::string_view>& header) {
+  for (const std::string_view column : kTrackColumns)
+    if (std::ranges::count(header, column) > 1) return column;
+  return {};
+}
+
+// Also one with a point, "12.0", as programs write that keep all numbers as floats.
+bool ParseIndex(std::string_view text, int* value) {
+  double number = 0;
+  if (ParseInt(text, value)) return *value >= 0;
+  if (!ParseFinite(text, &number) || number != std::floor(number)) return false;
+  if (number < 0 || number > std::numeric_limits<int>::max()) return false;
+  *value = static_cast<int>(number);
+  return true;
+}
+
 struct TrackRow {
   PointId id;
   TrackPixel seen;
@@ -47,10 +92,10 @@ struct TrackRow {
 // Empty: the row is right; else what is wrong with it.
 std::string ParseTrackRow(const std::vector<std::string_view>& fields, const TrackColumns& columns, TrackRow* row) {
   const auto field = [&](std::size_t k) { return fields[columns[k]]; };
-  if (!ParseInt(field(0), &row->seen.frame_idx) || row->seen.frame_idx < 0)
-    return Quoted(field(0)) + " is not a frame's number";
-  if (!ParseInt64(field(1), &row->id.value) || row->id.value < 0 || row->id.value > std::numeric_limits<int>::max())
-    return Quoted(field(1)) + " is not a track_id, a whole number from 0 to 2147483647";
+  if (!ParseIndex(field(0), &row->seen.frame_idx)) return Quoted(field(0)) + " is not a frame's number";
+  int id = 0;
+  if (!ParseIndex(field(1), &id)) return Quoted(field(1)) + " is not a track_id, a whole number from 0 to 2147483647";
+  row->id.value = id;
   for (const int axis : {0, 1})
     if (const std::string_view text = field(2 + static_cast<std::size_t>(axis));
         !ParseFinite(text, &row->seen.pixel[axis]))
@@ -64,17 +109,22 @@ Result<TrackFile> ReadTrackCsv(const std::string& path) {
   auto reader = LineReader::Open(path);
   if (!reader.ok()) return reader.status();
   std::string_view line;
-  const auto header = reader->Next(&line) ? Split(line, ',') : std::vector<std::string_view>();
+  const auto header = reader->Next(&line) ? BareFields(line) : std::vector<std::string_view>();
   const auto columns = ColumnsOf(header);
   const std::size_t count = header.size();
   if (!columns)
-    return Status(ErrorCode::kUnreadable, Quoted(path) +
-                                              " is no file of tracks: neither NumPy's .npz or .npy, nor a database of "
-                                              "COLMAP, nor a CSV whose first line names frame,track_id,u_px,v_px");
+    return Status(ErrorCode::kUnreadable,
+                  Quoted(path) +
+                      " is no file of tracks: neither NumPy's .npz or .npy, nor a database of COLMAP, nor a CSV whose "
+                      "first line names frame,track_id,u_px,v_px" +
+                      (header.empty() ? "; it is empty" : "; its first line is " + Shown(line)));
+  if (const std::string_view repeated = RepeatedColumn(header); !repeated.empty())
+    return Status(ErrorCode::kUnreadable, "the first line of " + Quoted(path) + " names " + std::string(repeated) +
+                                              " more than once; give each column a name of its own");
   std::map<PointId, std::map<int, TrackPixel>> tracks;
   while (reader->Next(&line)) {
-    if (line.empty()) continue;
-    const auto fields = Split(line, ',');
+    if (Bare(line).empty()) continue;
+    const auto fields = BareFields(line);
     if (fields.size() != count)
       return reader->Error("a row has " + std::to_string(count) + " columns, as the first line, this one has " +
                            std::to_string(fields.size()) + (reader->ended() ? "" : "; the file is cut off"));

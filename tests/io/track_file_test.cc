@@ -84,7 +84,18 @@ TEST(TrackFile, OfEveryFormIsRead) {
                      "2,1,14,24"),
         folder.Write("other.csv",
                      "v_px,u_px,score,track_id,frame\r\n24,14,1,1,2\r\n20,10,1,1,0\r\n6.25,5.5,1,0,2\r\n"
-                     "4.25,3.5,1,0,1\r\n2.25,1.5,1,0,0\r\n")}) {
+                     "4.25,3.5,1,0,1\r\n2.25,1.5,1,0,0\r\n"),
+        folder.Write(
+            "blanks.csv",
+            "frame, track_id, u_px, v_px\n0, 0, 1.5, 2.25\n0, 1, 10, 20\n1,\t0, 3.5, 4.25 \n \n2, 0, 5.5, 6.25\n"
+            "2, 1, 14, 24\n"),
+        folder.Write(
+            "quotes.csv",
+            "\"frame\",\"track_id\",\"u_px\",\"v_px\"\n\"0\",\"0\",\"1.5\",\"2.25\"\n0, \"1\",10,20\n1,0,3.5,4.25\n"
+            "2,0,5.5,6.25\n2,1,14,24\n"),
+        folder.Write("floats.csv",
+                     "frame,track_id,u_px,v_px\n0.0,0.0,1.5,2.25\n0.0,1.0,10.0,20.0\n1.0,0.0,3.5,4.25\n"
+                     "2.0,0.0,5.5,6.25\n2.0,1e0,14.0,24.0\n")}) {
     SCOPED_TRACE(path);
     ExpectTheTwoPoints(Read(path));
   }
@@ -214,9 +225,18 @@ std::string TracksAs(const std::string& type, const std::string& shape, const st
 INSTANTIATE_TEST_SUITE_P(
     TrackFile, WrongTrackFile,
     testing::Values(
-        WrongTracks{"SomethingElse", "a.png", "\x89PNG\r\n", "is no file of tracks"},
+        WrongTracks{"SomethingElse", "a.png", "\x89PNG\r\n", "its first line is '?PNG'"},
         WrongTracks{"Empty", "a.csv", "", "is no file of tracks"},
         WrongTracks{"OtherColumns", "a.csv", "frame,id,x,y\n0,0,1,2\n", "is no file of tracks"},
+        WrongTracks{"Semicolons", "a.csv", "frame;track_id;u_px;v_px\n0;0;1;2\n",
+                    "its first line is 'frame;track_id;u_px;v_px'"},
+        WrongTracks{"Comment", "a.csv", "# made by a tracker\nframe,track_id,u_px,v_px\n0,0,1,2\n",
+                    "its first line is '# made by a tracker'"},
+        WrongTracks{"LongLine", "a.csv", std::string(70, 'x') + "\n",
+                    "its first line is '" + std::string(60, 'x') + "...'"},
+        WrongTracks{"TwoColumnsOfOneName", "a.csv", "frame,track_id,u_px,u_px,v_px\n0,0,1,1,2\n",
+                    "names u_px more than once"},
+        WrongTracks{"HalfAFrame", "a.csv", Csv("0.5,0,1,2\n"), "'0.5' is not a frame's number"},
         WrongTracks{"NoRows", "a.csv", Csv(""), "has no point that is seen", ErrorCode::kInsufficient},
         WrongTracks{"TwiceInAFrame", "a.csv", Csv("0,0,1,2\n0,1,1,2\n0,0,3,4\n"), ":4: track 0 comes twice in frame 0"},
         WrongTracks{"NotANumber", "a.csv", Csv("0,0,nan,2\n"), ":2: 'nan' is not a finite number"},
