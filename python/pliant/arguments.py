@@ -32,14 +32,16 @@ def error(code: str, sentence: str) -> _pliant.Error:
     return result
 
 
-def whole(value: Any, name: str) -> int:
-    """A whole number, also NumPy's, and a float that is one."""
-    if isinstance(value, (float, np.floating)) and float(value).is_integer():
-        return int(value)
+def whole(value: Any, name: str, low: int = -2**31, high: int = 2**31 - 1) -> int:
+    """A whole number from low to high (those of an int of the library), also NumPy's, and a float that is one."""
     try:
-        return operator.index(value)
+        is_whole_float = isinstance(value, (float, np.floating)) and float(value).is_integer()
+        chosen = int(value) if is_whole_float else operator.index(value)
     except TypeError:
         raise wrong(value, name, "a whole number") from None
+    if not low <= chosen <= high:
+        raise ValueError(f"{name} is {chosen}; give a whole number from {low} to {high}")
+    return chosen
 
 
 def number(value: Any, name: str) -> float:

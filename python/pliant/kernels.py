@@ -58,12 +58,11 @@ def relative_pose(rays0: NDArray[Any], rays1: NDArray[Any], focal_px: float, *, 
         pliant.Error: too few matches or inliers (insufficient), or matches that do not determine the motion
             (degenerate).
     """
-    if given.whole(seed, "seed") < 0:
-        raise ValueError(f"seed is {seed}; give a number from 0 on")
     return _pliant.relative_pose(rays0, rays1, given.number(focal_px, "focal_px"), {
         "solver": given.text(solver, "solver"), "robust": given.text(robust, "robust"),
         "max_error_px": given.number(max_error_px, "max_error_px"),
-        "max_iterations": given.whole(max_iterations, "max_iterations"), "seed": given.whole(seed, "seed")})
+        "max_iterations": given.whole(max_iterations, "max_iterations", low=1),
+        "seed": given.whole(seed, "seed", low=0, high=2**64 - 1)})
 
 
 @dataclass(frozen=True, eq=False)

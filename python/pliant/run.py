@@ -98,7 +98,7 @@ class Run:
     def frame(self, frame_idx: SupportsIndex) -> Observations:
         """The points of the frame with this number, sorted by point_id; views, not copies; none where
         it has none."""
-        column, wanted = self.observations.frame_idx, given.whole(frame_idx, "frame_idx")
+        column, wanted = self.observations.frame_idx, given.whole(frame_idx, "frame_idx", -2**62, 2**62)
         if not 0 <= wanted < np.iinfo(column.dtype).max:
             return self.observations[:0]
         first, last = np.searchsorted(column, np.array([wanted, wanted + 1], column.dtype))  # no copy of it
@@ -108,7 +108,7 @@ class Run:
         """The way of a point: numbers of the frames that have it (n,), and its positions in them (n, 3), world frame of
         each frame's map, map units; views, of one copy of these columns in the order of the points."""
         ids, frame_idx, position = self._by_point
-        wanted = given.whole(point_id, "point_id")
+        wanted = given.whole(point_id, "point_id", -2**62, 2**62)
         first, last = np.searchsorted(ids, [wanted, wanted + 1])
         return frame_idx[first:last], position[first:last]
 

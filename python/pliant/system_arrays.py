@@ -338,10 +338,7 @@ def _size(value: Any) -> Size:
 
 
 def _at_least(least: int, value: Any, name: str) -> int:
-    number = given.whole(value, name)
-    if number < least:
-        raise ValueError(f"{name} is {number}; give a whole number from {least} on")
-    return number
+    return given.whole(value, name, low=least)
 
 
 def convert_arrays(input_path: StrPath, output_path: StrPath, system: str, size: given.Wholes, *,

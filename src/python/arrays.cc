@@ -55,8 +55,10 @@ double NumberOf(const py::handle& object, const std::string& what) {
 
 int WholeOf(const py::handle& object, const std::string& what) {
   const double value = NumberOf(object, what);
-  if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max())
-    RaiseValueError(what + " is " + py::cast<std::string>(py::str(object)) + "; give a whole number");
+  constexpr int kLargest = std::numeric_limits<int>::max();
+  if (value != std::floor(value) || std::abs(value) > kLargest)
+    RaiseValueError(what + " is " + py::cast<std::string>(py::str(object)) + "; give a whole number" +
+                    (std::abs(value) > kLargest ? " of at most " + std::to_string(kLargest) : ""));
   return static_cast<int>(value);
 }
 

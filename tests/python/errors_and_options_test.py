@@ -80,11 +80,16 @@ class Arguments(TestCase):
         sequence = pliant.open_sequence(SEQUENCE)
         self.refused("the input is a pliant.Sequence", pliant.track, sequence, out, end=3)
         self.refused("frame_idx is a str; give a whole number", sequence.depth, "a")
+        for call in (sequence.depth, sequence.world_from_cam):
+            self.refused("frame_idx is 1000000000000; give a whole number from -2147483648 to 2147483647", call, 10**12)
+        self.refused("end is 1099511627776; give a whole number from", pliant.track, SEQUENCE, out, end=2**40)
 
     def test_of_the_tracker(self):
         camera = pliant.Camera("PINHOLE", 640.0, np.int64(480), np.array([400, 400, 320, 240]))
         self.assertEqual((camera.width, camera.height), (640, 480))
         self.refused("width is 640.5; give a whole number", pliant.Camera, "PINHOLE", 640.5, 480, [400, 400, 320, 240])
+        self.refused("width is 1099511627776; give a whole number of at most 2147483647", pliant.Camera, "PINHOLE", 2**40,
+                     480, [400, 400, 320, 240])
         self.refused("params is a str; give a list of numbers", pliant.Camera, "PINHOLE", 640, 480, "abc")
         self.refused("fps is a str; give a number", pliant.Camera, "PINHOLE", 640, 480, [400, 400, 320, 240], fps="30")
         image, prior = np.zeros((480, 640), np.uint8), np.ones((5, 400), np.float32)
@@ -127,7 +132,9 @@ class Arguments(TestCase):
         for figure in (None, [1]):
             self.refused("there is no run to show", pliant.report, [], out / "page.html" if figure is None else
                          out / "still.png", figure=figure)
-        self.refused("seed is -1", pliant.kernels.relative_pose, rays, rays, 400, seed=-1)
+        for name, value in (("seed", -1), ("seed", 2**80), ("max_iterations", 0), ("max_iterations", 2**40)):
+            self.refused(f"{name} is {value}; give a whole number from ", pliant.kernels.relative_pose, rays, rays, 400,
+                         **{name: value})
         self.refused("solver is a NoneType", pliant.kernels.relative_pose, rays, rays, 400, solver=None)
         self.refused("focal_px is a str", pliant.kernels.relative_pose, rays, rays, "f")
         self.refused("options are a dictionary", pliant.kernels.deformation_graph, rays, options=[3])
