@@ -93,10 +93,21 @@ def truth(value: Any, name: str) -> bool:
     return bool(value)
 
 
+def _utf8(value: str, name: str, advice: str) -> str:
+    """As the library and its files have it: what Python makes of other names of files cannot be written there."""
+    if "\0" in value:
+        raise ValueError(f"{name}, {value!r}, has a character of the code 0; leave it out")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{name}, {value!r}, is not UTF-8; {advice}") from None
+    return value
+
+
 def text(value: Any, name: str) -> str:
     if not isinstance(value, str):
         raise wrong(value, name, "text")
-    return value
+    return _utf8(value, name, "give other text")
 
 
 def optional_text(value: Any, name: str) -> str:
@@ -107,7 +118,10 @@ def optional_text(value: Any, name: str) -> str:
 def path(value: Any, name: str) -> str:
     if not isinstance(value, (str, os.PathLike)):
         raise wrong(value, name, "a path")
-    return os.fspath(value)
+    chosen = os.fspath(value)
+    if not isinstance(chosen, str):
+        raise wrong(chosen, name, "a path of text")
+    return _utf8(chosen, name, "rename it")
 
 
 def optional_path(value: Any, name: str) -> str:
@@ -138,7 +152,14 @@ def camera_path(value: Any) -> str:
 
 def options(values: Any) -> Any:
     """A dictionary of any mapping; what is none is refused where it is read."""
-    return dict(values) if isinstance(values, Mapping) else values
+    if not isinstance(values, Mapping):
+        return values
+    for name, value in values.items():
+        for part in (name, *(value if isinstance(value, (list, tuple)) else [value])):
+            part = os.fspath(part) if isinstance(part, os.PathLike) else part
+            if isinstance(part, str):
+                _utf8(part, "an option" if part is name else f"the option {name}", "give another name")
+    return dict(values)
 
 
 def options_with(values: Any, named: dict[str, str]) -> Any:

@@ -243,7 +243,7 @@ def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: 
     if is_path:
         if timestamps is not None:
             raise ValueError("timestamps are for images that are given; those of a path come from its times.txt")
-        request.update(image_path=os.fspath(images), camera_path=given.camera_path(camera))
+        request.update(image_path=given.path(images, "input"), camera_path=given.camera_path(camera))
     else:
         if resume:
             raise ValueError("images that are given do not come again, so such a run cannot be resumed; give a path")

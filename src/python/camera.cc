@@ -4,13 +4,11 @@
 #include "pliant/camera/camera.h"
 
 #include <array>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
@@ -61,9 +59,11 @@ bool IsSame(const Calibration& calibration, const py::object& other) {
   return py::isinstance<Calibration>(other) && StateOf(calibration).equal(StateOf(py::cast<const Calibration&>(other)));
 }
 
-void Write(const Calibration& calibration, const std::filesystem::path& path) {
-  RaiseUnlessOk(WriteCameraFile(
-      path.string(), {.camera = calibration.camera, .fps = calibration.fps, .photometric = calibration.photometric}));
+void Write(const Calibration& calibration, const py::object& path) {
+  const py::object checked = py::module_::import("pliant.arguments").attr("path")(path, "path");
+  RaiseUnlessOk(
+      WriteCameraFile(py::cast<std::string>(checked),
+                      {.camera = calibration.camera, .fps = calibration.fps, .photometric = calibration.photometric}));
 }
 
 Calibration ReadCalibration(const std::string& path) {

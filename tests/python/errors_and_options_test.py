@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Errors are exceptions with the sentence of the command line; options have its names and its checks."""
 
+import os
+import pathlib
 import unittest
 
 import numpy as np
@@ -83,6 +85,20 @@ class Arguments(TestCase):
         for call in (sequence.depth, sequence.world_from_cam):
             self.refused("frame_idx is 1000000000000; give a whole number from -2147483648 to 2147483647", call, 10**12)
         self.refused("end is 1099511627776; give a whole number from", pliant.track, SEQUENCE, out, end=2**40)
+
+    def test_that_are_paths_have_names_in_utf_8(self):
+        out = self.folder / "out"
+        camera = pliant.Camera("PINHOLE", 640, 480, [400, 400, 320, 240])
+        for name, message in ((os.fsdecode(b"\xfcber"), r"'\udcfcber', is not UTF-8; rename it"),
+                              ("a\0b", r"'a\x00b', has a character of the code 0; leave it out")):
+            for call, arguments in ((pliant.open_run, [pathlib.Path(name)]), (pliant.open_sequence, [name]),
+                                    (pliant.track, [name, out]), (pliant.export, [RUN, name, "ply"]),
+                                    (pliant.read_camera, [name]), (camera.write, [name])):
+                self.refused(message, call, *arguments)
+            option = message.replace("rename it", "give another name")
+            self.refused("the option TrackFile.path, " + option, pliant.track, SEQUENCE, out, {"TrackFile.path": name})
+            self.refused("an option, " + option, pliant.track, SEQUENCE, out, {name: 3})
+        self.refused("path is a bytes; give a path", pliant.open_run, b"run")
 
     def test_of_the_tracker(self):
         camera = pliant.Camera("PINHOLE", 640.0, np.int64(480), np.array([400, 400, 320, 240]))
