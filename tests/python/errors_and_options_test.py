@@ -4,6 +4,7 @@
 
 import os
 import pathlib
+import pickle
 import unittest
 
 import numpy as np
@@ -37,6 +38,26 @@ class Errors(TestCase):
         self.assertEqual(caught.exception.code, "insufficient")
         self.assertIn("one frame is not enough for a map", str(caught.exception))
         self.assertEqual(pliant.open_run(self.folder / "run").summary["status"], "failed")
+
+
+class Unmade(TestCase):
+    """An object that __new__ alone made holds nothing, and no function takes it."""
+
+    def test_objects_say_so(self):
+        from pliant import _pliant
+        camera = pliant.Camera.__new__(pliant.Camera)
+        report = pliant.FrameReport.__new__(pliant.FrameReport)
+        tracker, source, reader = (kind.__new__(kind) for kind in (pliant.Tracker, _pliant.SequenceSource,
+                                                                   _pliant.FrameReader))
+        made = pliant.Camera("PINHOLE", 640, 480, [400, 400, 320, 240])
+        for call in (lambda: camera.params, lambda: camera.fps, lambda: camera.project(np.zeros((1, 3))),
+                     lambda: repr(camera), lambda: hash(camera), lambda: made == camera, lambda: pickle.dumps(camera),
+                     lambda: camera.write(self.folder / "camera.yaml"), lambda: report.name, lambda: repr(report),
+                     lambda: report.observations, lambda: tracker.state, tracker.finish, lambda: source.camera,
+                     source.begin, reader.next, lambda: pliant.Tracker(camera)):
+            with self.assertRaises(TypeError) as caught:
+                call()
+            self.assertIn("was made by __new__ alone", sentence(self, caught.exception))
 
 
 class Arguments(TestCase):
