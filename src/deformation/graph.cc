@@ -25,6 +25,11 @@ bool AllFinite(Points points) {
   return std::all_of(points.begin(), points.end(), [](const Eigen::Vector3d& x) { return x.allFinite(); });
 }
 
+// Whether the square of every distance is a number.
+bool HaveDistances(Points points) {
+  return std::ranges::all_of(points, [](const Eigen::Vector3d& x) { return std::isfinite((2 * x).squaredNorm()); });
+}
+
 constexpr int kNobody = -1;
 constexpr int kQueriesAtOnce = 64;  // by one thread
 
@@ -156,6 +161,11 @@ Result<DeformationGraph> BuildDeformationGraph(Points positions, Points rest_pos
                                       " positions but " + std::to_string(rest_positions.size()) + " rest positions"};
   if (!AllFinite(positions) || !AllFinite(rest_positions))
     return {ErrorCode::kInvalidArgument, "the deformation graph was given a position that is not a finite number"};
+
+  if (!HaveDistances(positions) || !HaveDistances(rest_positions))
+    return {ErrorCode::kInvalidArgument,
+            "the deformation graph was given a position so far away that squares of distances are not finite; give "
+            "millimeters"};
 
   DeformationGraph graph;
   graph.num_points = static_cast<int>(positions.size());

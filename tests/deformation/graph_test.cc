@@ -145,6 +145,11 @@ TEST(DeformationGraph, RefusesBadInput) {
   Points points = RandomPoints(30, 5);
   const Points fewer(points.begin(), points.end() - 1);
   EXPECT_EQ(BuildDeformationGraph(points, fewer, {}).status().code(), ErrorCode::kMismatch);
+  for (const double far : {1e154, -1e200}) {  // the square of a distance overflows
+    points[7].y() = far;
+    EXPECT_EQ(BuildDeformationGraph(points, {}, {}).status().code(), ErrorCode::kInvalidArgument);
+    EXPECT_EQ(BuildDeformationGraph(RandomPoints(30, 5), points, {}).status().code(), ErrorCode::kInvalidArgument);
+  }
   points[7].y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(BuildDeformationGraph(points, {}, {}).status().code(), ErrorCode::kInvalidArgument);
 }

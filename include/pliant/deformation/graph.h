@@ -74,8 +74,8 @@ NeighborLists NearestNeighborsApart(std::span<const Eigen::Vector3d> positions, 
 // nothing asks for them, and then rest lengths are the present lengths and no edge is cut. The search is exact, and
 // neighbors at equal distance are taken in the order of their index, so the answer depends on nothing but the input.
 // With N <= K points everyone is everyone's neighbor; with none or one there are no edges. It does not depend on the
-// number of threads (at least 1) either. Fails with kInvalidArgument for positions that are not finite and with
-// kMismatch for counts that differ.
+// number of threads (at least 1) either. Fails with kInvalidArgument for positions that are not finite, or
+// so far away that squares of distances are not, and with kMismatch for counts that differ.
 Result<DeformationGraph> BuildDeformationGraph(std::span<const Eigen::Vector3d> positions,
                                                std::span<const Eigen::Vector3d> rest_positions,
                                                const GraphOptions& options, int threads = 1);
