@@ -184,6 +184,14 @@ def register_cost(name: str, cost: Cost) -> None:
     _costs[name] = cost
 
 
+def _real(values: Any, what: str) -> NDArray[Any]:
+    """As floats; the imaginary part of complex numbers would be lost."""
+    array = np.asarray(values)
+    if array.dtype.kind == "c":
+        raise TypeError(f"a cost returned complex numbers as its {what}; give real ones")
+    return np.asarray(array, dtype=float)
+
+
 def _triplets(jacobian: Any, rows: int, columns: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
     """The entries (row, column, value) of a Jacobian, checked."""
     if isinstance(jacobian, tuple):
@@ -200,7 +208,7 @@ def _triplets(jacobian: Any, rows: int, columns: int) -> tuple[NDArray[Any], NDA
             raise ValueError(f"the jacobian of a cost has entries outside of its shape ({rows}, {columns})")
     else:
         sparse = callable(getattr(jacobian, "tocoo", None))
-        whole = jacobian if sparse else np.asarray(jacobian, dtype=float)
+        whole = jacobian if sparse else _real(jacobian, "jacobian")
         if whole.shape != (rows, columns):
             raise ValueError(f"the jacobian of a cost has the shape {whole.shape}, and {rows} residuals of "
                              f"{columns // 3} points need ({rows}, {columns})")
@@ -210,7 +218,7 @@ def _triplets(jacobian: Any, rows: int, columns: int) -> tuple[NDArray[Any], NDA
         else:
             row, column = np.nonzero(whole)
             value = whole[row, column]
-    return row.astype(np.int32), column.astype(np.int32), value.astype(float)
+    return row.astype(np.int32), column.astype(np.int32), _real(value, "jacobian")
 
 
 def _coster(cost: Cost) -> Callable[..., tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]]:
@@ -228,7 +236,7 @@ def _coster(cost: Cost) -> Callable[..., tuple[NDArray[Any], NDArray[Any], NDArr
         if not isinstance(answer, tuple) or len(answer) != 2:
             raise TypeError(f"evaluate of a cost returns (residuals, jacobian); this one returned "
                             f"{type(answer).__name__}")
-        residuals = np.asarray(answer[0], dtype=float)
+        residuals = _real(answer[0], "residuals")
         if residuals.ndim != 1:
             raise ValueError(f"the residuals of a cost have the shape {residuals.shape}; give (R,)")
         problem = frame.point_id.tobytes() + frame.cam_from_world.tobytes()

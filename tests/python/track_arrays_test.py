@@ -116,6 +116,8 @@ class Arrays(TestCase):
                  (np.nan_to_num(tracks), np.where(seen, 1, -1))),
                 (pliant.Error, "no pixel of the given tracks is in the image with a sigma_px of",
                  {"tracks": tracks, "visibility": seen, "sigma_px": np.full(seen.shape, 9.0)}),
+                (ValueError, "the array 'tracks' has masked entries",
+                 (np.ma.array(tracks, mask=np.repeat(~seen[..., None], 2, 2)), seen)),
                 (ValueError, "the tracks have the arrays points, occluded; name them",
                  {"points": tracks, "occluded": ~seen}),
                 (ValueError, "tracks is a tuple of 3; give a pair", (tracks, seen, seen)),
