@@ -49,6 +49,10 @@ class Sequence:
     def __repr__(self) -> str:
         return f"<pliant.Sequence {self.path}: {len(self)} frames of {self.camera.width}x{self.camera.height} pixels>"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A copy, also one in another process, opens the sequence again."""
+        return type(self), (self.path, self.request)
+
     def __len__(self) -> int:
         """How many frames there are; of a video what its container says."""
         return self._source.size

@@ -107,7 +107,9 @@ py::array_t<double> MatrixOf(const Rigid3& b_from_a) {
 
 py::array_t<double> PointsOf(const py::handle& object, int columns, const std::string& what) {
   const std::string wanted = "an array of real numbers of shape (n, " + std::to_string(columns) + ")";
-  const py::array array = AnyArray(object, what, wanted);
+  const bool is_rows = py::isinstance<py::list>(object) || py::isinstance<py::tuple>(object);
+  const py::array of_rows = is_rows ? py::array::ensure(object) : py::array();
+  const py::array array = AnyArray(is_rows && of_rows ? py::handle(of_rows) : object, what, wanted);
   const char kind = array.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u')
     RaiseTypeError(what + " is " + wanted + "; this one is " + ShapeText(array));

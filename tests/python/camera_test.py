@@ -48,9 +48,12 @@ class Camera(TestCase):
         np.testing.assert_array_equal(camera.project(np.asfortranarray(points)), expected)
         np.testing.assert_array_equal(camera.project(points[::2]), expected[::2])
         self.assertEqual(camera.project(np.zeros((0, 3))).shape, (0, 2))
+        np.testing.assert_array_equal(camera.project(points.tolist()), expected)
+        np.testing.assert_array_equal(camera.unproject([(32, 24)]), [[0, 0, 1]])
 
     def test_other_arrays_are_refused_in_one_sentence(self):
-        for points, kind in ((np.zeros(3), ValueError), (np.zeros((3, 2)), ValueError), ([[0, 0, 1]], TypeError),
+        for points, kind in ((np.zeros(3), ValueError), (np.zeros((3, 2)), ValueError), ([[0, 0, 1], [0]], TypeError), ([["a", 0, 1]], TypeError),
+                             ([0, 0, 1], ValueError), ("abc", TypeError),
                              (np.zeros((2, 3), complex), TypeError), (np.zeros((2, 3), bool), TypeError)):
             with self.assertRaises(kind) as caught:
                 self.camera.project(points)

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A sequence is what lies on disk, as often as it is read."""
 
+import copy
+import pickle
 import unittest
 
 import numpy as np
@@ -32,6 +34,12 @@ class Sequences(TestCase):
         row = (SEQUENCE / "groundtruth.txt").read_text().splitlines()[5].split()
         np.testing.assert_allclose(pose[:3, 3], [float(number) for number in row[1:4]], atol=1e-6)
         self.assertIsNone(sequence.baseline_mm)
+
+    def test_a_copy_opens_it_again(self):
+        sequence = pliant.open_sequence(SEQUENCE, start=2, end=8, stride=2)
+        for again in (pickle.loads(pickle.dumps(sequence)), copy.deepcopy(sequence)):
+            self.assertEqual(repr(again), repr(sequence))
+            self.assertEqual([frame.frame_idx for frame in again], [2, 4, 6])
 
     def test_what_is_not_there_is_one_sentence(self):
         with self.assertRaises(pliant.Error) as raised:
