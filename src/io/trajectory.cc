@@ -50,6 +50,11 @@ Result<TimedPose> ParseEurocLine(std::string_view line) {
   }
   std::array<double, 8> v;
   if (Status status = ParseTrajectoryFields(fields, v); !status.ok()) return status;
+  if (v[0] != std::floor(v[0]))
+    return Status(ErrorCode::kUnreadable,
+                  "the time " + std::string(fields[0]) +
+                      " is not a whole number; times of EuRoC are nanoseconds: write seconds as TUM's lines (timestamp "
+                      "tx ty tz qx qy qz qw), and read them as tum");
   return MakePose(1e-9 * v[0], {v[1], v[2], v[3]}, Eigen::Quaterniond(v[4], v[5], v[6], v[7]));
 }
 

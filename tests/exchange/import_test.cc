@@ -348,6 +348,7 @@ TEST_F(ImportTest, DamagedCameraPathsAreNamedByLine) {
       {"1 0 0 0 0 1 0 0 0 0 -1 0\n", ImportFormat::kKitti, "not a rotation"},
       {"1 0 0 0 0 1 nan 0 0 0 1 0\n", ImportFormat::kKitti, "'nan'"},
       {"40400000,1,2,3,1,0,0\n", ImportFormat::kEuroc, "8 numbers"},
+      {"0.0404,1,2,3,1,0,0,0\n", ImportFormat::kEuroc, "times of EuRoC are nanoseconds"},
       {"40400000,1,2,3,1,1,0,0\n", ImportFormat::kEuroc, "length"},
       {"40400000,1,2 2,3,1,0,0,0\n", ImportFormat::kEuroc, "not a finite number"},
       {"0.04 1 2 3 0 0 0\n", ImportFormat::kTum, "8 numbers"},
