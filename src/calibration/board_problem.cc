@@ -4,6 +4,7 @@
 #include "calibration/board_problem.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -239,8 +240,15 @@ bool Solve(std::span<const Eigen::Vector3d> board_points, std::span<const BoardV
       max_iterations, [&] { return ResidualSigma(board_points, views, without, *fit); }, build);
 }
 
-std::vector<double> CovarianceSigmas(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
-                                     const std::vector<bool>& without, const BoardFit& fit) {
+double StudentFactor(int groups) {
+  // By degrees of freedom: the quantile of Student's t that holds 68.27 %.
+  constexpr std::array factors = {1.837, 1.321, 1.197, 1.142, 1.111, 1.091, 1.077};
+  static_assert(factors.size() == kMaxGroups - 1);
+  return factors[static_cast<std::size_t>(std::clamp(groups, 2, kMaxGroups)) - 2];
+}
+
+Eigen::MatrixXd Covariance(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
+                           const std::vector<bool>& without, const BoardFit& fit) {
   BoardFit copy = fit;
   const double sigma = ResidualSigma(board_points, views, without, fit);
   ceres::Problem::Options problem_options;
@@ -262,13 +270,14 @@ std::vector<double> CovarianceSigmas(std::span<const Eigen::Vector3d> board_poin
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.cwiseInverse().asDiagonal() * normal *
                                                               scale.cwiseInverse().asDiagonal());
   if (!(solver.eigenvalues().minCoeff() > kSmallestEigenvalue)) return {};
-  std::vector<double> sigmas(fit.params.size(), 0.0);
-  for (Eigen::Index i = 0; i < fit.num_free; ++i) {
-    const double variance =
-        (solver.eigenvectors().row(i).transpose().array().square() / solver.eigenvalues().array()).sum();
-    sigmas[static_cast<std::size_t>(i)] = sigma * std::sqrt(variance) / scale[i];
-  }
-  return sigmas;
+  const Eigen::Index free = fit.num_free;
+  const Eigen::VectorXd root_weights = solver.eigenvalues().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd roots = sigma * scale.head(free).cwiseInverse().asDiagonal() *
+                                solver.eigenvectors().topRows(free) * root_weights.asDiagonal();
+  const auto num_params = static_cast<Eigen::Index>(fit.params.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(num_params, num_params);
+  covariance.topLeftCorner(free, free) = roots * roots.transpose();
+  return covariance;
 }
 
 }  // namespace pliant

@@ -31,7 +31,7 @@ using BoardPose = std::array<double, 6>;
 struct BoardFit {
   CameraModelId model = CameraModelId::kPinhole;
   std::vector<double> params;
-  int num_free = 0;  // so many of the first parameters are estimated; the others, of the distortion, are 0
+  int num_free = 0;  // so many of the first parameters are estimated; the others are held: of a distortion, at 0
   std::vector<BoardPose> poses;
 };
 
@@ -67,10 +67,14 @@ bool Solve(std::span<const Eigen::Vector3d> board_points, std::span<const BoardV
 std::vector<Eigen::Vector2d> Residuals(std::span<const Eigen::Vector3d> board_points, const BoardView& view,
                                        const BoardFit& fit, const BoardPose& pose);
 
-// The standard deviations of the parameters by the inverse of the normal equations and the residuals' own size; empty
-// where the views do not determine them. Of a parameter that is not free it is 0.
-std::vector<double> CovarianceSigmas(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
-                                     const std::vector<bool>& without, const BoardFit& fit);
+// The covariance of the parameters by the inverse of the normal equations and the residuals' own size; empty where the
+// views do not determine them. Of a parameter that is not free it is 0.
+Eigen::MatrixXd Covariance(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
+                           const std::vector<bool>& without, const BoardFit& fit);
+
+// By what standard deviations that so many groups give are multiplied: the fewer groups, the less is known of their
+// spread (Student's t with one degree of freedom less than groups, by the normal distribution).
+double StudentFactor(int groups);
 
 // The error of a point of the board, of the parameters and the pose.
 ceres::CostFunction* MakeBoardResidual(CameraModelId model, const Eigen::Vector3d& point, const Eigen::Vector2d& pixel);

@@ -10,6 +10,8 @@
 #include <string>
 
 #include "calibration/board_problem.h"
+#include "calibration/choose_model.h"
+#include "calibration/pixel_accuracy.h"
 #include "pliant/base/parallel.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
@@ -191,7 +193,8 @@ double PredictionError(const CalibrationInput& input, const BoardView& view, con
 // What fits without one group of views after the other say of a model.
 struct GroupFits {
   std::vector<double> prediction_errors_px;  // a used view each
-  std::vector<double> jackknife_sigmas;      // a parameter each
+  Eigen::MatrixXd covariance;                // of the parameters, by the jackknife
+  double student_factor = 1;                 // of their number
 };
 
 std::optional<GroupFits> FitGroups(const CalibrationInput& input, const std::vector<bool>& outliers,
@@ -219,65 +222,54 @@ std::optional<GroupFits> FitGroups(const CalibrationInput& input, const std::vec
     if (group.empty()) return std::nullopt;
   GroupFits result;
   result.prediction_errors_px = errors;
-  for (std::size_t i = 0; i < fit.params.size(); ++i) {
-    double mean = 0;
-    for (const std::vector<double>& group : params) mean += group[i] / groups;
-    double sum = 0;
-    for (const std::vector<double>& group : params) sum += (group[i] - mean) * (group[i] - mean);
-    result.jackknife_sigmas.push_back(std::sqrt((groups - 1.0) / groups * sum));
-  }
+  const auto num_params = static_cast<Eigen::Index>(fit.params.size());
+  Eigen::MatrixXd by_group(num_params, groups);
+  for (int group = 0; group < groups; ++group)
+    by_group.col(group) = Eigen::Map<const Eigen::VectorXd>(params[static_cast<std::size_t>(group)].data(), num_params);
+  const Eigen::MatrixXd from_mean = by_group.colwise() - by_group.rowwise().mean();
+  result.covariance = (groups - 1.0) / groups * from_mean * from_mean.transpose();
+  result.student_factor = StudentFactor(groups);
   return result;
 }
 
-// A model with all that is known of it.
-struct Candidate {
-  BoardFit fit;
-  Camera camera;
-  std::vector<double> sigmas;
-  std::vector<double> prediction_errors_px;
-};
-
-std::optional<Candidate> Evaluate(const CalibrationInput& input, const std::vector<bool>& outliers, BoardFit fit) {
+std::optional<ModelCandidate> Evaluate(const CalibrationInput& input, const std::vector<bool>& outliers, BoardFit fit) {
   if (!Solve(input.points, input.views, outliers, Intrinsics::kFree, kMaxIterations, &fit)) return std::nullopt;
   auto camera = Camera::Create(fit.model, input.width, input.height, fit.params);
   if (!camera.ok()) return std::nullopt;
-  std::vector<double> sigmas = CovarianceSigmas(input.points, input.views, outliers, fit);
-  if (sigmas.empty() || !(sigmas.front() < kLargestFocalLengthSigma * fit.params.front())) return std::nullopt;
-  const auto groups = FitGroups(input, outliers, fit);
+  const auto knows_focal_length = [&](const Eigen::MatrixXd& of_params) {
+    return std::sqrt(of_params(0, 0)) < kLargestFocalLengthSigma * fit.params.front();
+  };
+  ParamsCovariance covariance{Covariance(input.points, input.views, outliers, fit), {}};
+  if (covariance.of_points.size() == 0 || !knows_focal_length(covariance.of_points)) return std::nullopt;
+  auto groups = FitGroups(input, outliers, fit);
   if (!groups) return std::nullopt;
-  for (std::size_t i = 0; i < sigmas.size(); ++i) sigmas[i] = std::max(sigmas[i], groups->jackknife_sigmas[i]);
-  if (!(sigmas.front() < kLargestFocalLengthSigma * fit.params.front())) return std::nullopt;
-  return Candidate{std::move(fit), *std::move(camera), std::move(sigmas), groups->prediction_errors_px};
+  const double widening = groups->student_factor * groups->student_factor;
+  covariance.of_points *= widening;
+  covariance.of_views = widening * groups->covariance;
+  if (!knows_focal_length(covariance.of_points) || !knows_focal_length(covariance.of_views)) return std::nullopt;
+  return ModelCandidate{std::move(fit), *std::move(camera), std::move(covariance),
+                        std::move(groups->prediction_errors_px)};
 }
 
-HeldOutError Compared(const Candidate& candidate, const Candidate& best) {
-  HeldOutError error;
-  error.model = candidate.fit.model;
-  error.num_params = candidate.fit.num_free;
-  error.rms_px = Mean(candidate.prediction_errors_px);
-  std::vector<double> excess;
-  for (std::size_t i = 0; i < candidate.prediction_errors_px.size(); ++i)
-    excess.push_back(candidate.prediction_errors_px[i] - best.prediction_errors_px[i]);
-  error.excess_px = Mean(excess);
-  error.excess_sigma_px = StandardError(excess);
-  return error;
-}
-
-// The candidate of the fewest parameters that is no worse than the best one by more than a standard error, of the
-// difference or of the best one's own error: what the points' own errors imitate differs little, but in every view.
-std::size_t Choose(const std::vector<Candidate>& candidates, std::vector<HeldOutError>* errors) {
-  const auto error_of = [](const Candidate& candidate) { return Mean(candidate.prediction_errors_px); };
-  const auto best = std::min_element(candidates.begin(), candidates.end(),
-                                     [&](const auto& a, const auto& b) { return error_of(a) < error_of(b); });
-  auto chosen = static_cast<std::size_t>(best - candidates.begin());
-  const double best_sigma_px = StandardError(best->prediction_errors_px);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    errors->push_back(Compared(candidates[i], *best));
-    if (errors->back().excess_px <= std::max(errors->back().excess_sigma_px, best_sigma_px) &&
-        candidates[i].fit.num_free < candidates[chosen].fit.num_free)
-      chosen = i;
+// The focal length of the first half of the views that are used, and of the second, all other parameters held.
+std::vector<FocalLengthEstimate> HalfFocalLengths(const CalibrationInput& input, const std::vector<bool>& outliers,
+                                                  const BoardFit& fit) {
+  const int used = NumUsed(outliers);
+  if (used < 2 * kFewestCalibrationViews) return {};
+  std::vector<FocalLengthEstimate> halves;
+  for (const bool is_first : {true, false}) {
+    std::vector<bool> without = outliers;
+    int place = 0;
+    for (std::size_t view = 0; view < outliers.size(); ++view)
+      if (!outliers[view]) without[view] = (place++ < used / 2) != is_first;
+    BoardFit half = fit;
+    half.num_free = NumPinholeParams(fit.model) - 2;
+    if (!Solve(input.points, input.views, without, Intrinsics::kFree, kMaxIterations, &half)) return {};
+    const Eigen::MatrixXd covariance = Covariance(input.points, input.views, without, half);
+    if (covariance.size() == 0) return {};
+    halves.push_back({half.params.front(), std::sqrt(covariance(0, 0))});
   }
-  return chosen;
+  return halves;
 }
 
 // Of the board against the image: one that is parallel to it says nothing of the focal length, wherever it is seen.
@@ -309,13 +301,13 @@ std::vector<FittedView> FittedViews(const CalibrationInput& input, const std::ve
 
 // Whether the chosen model knows the focal length by its own curves alone: a fisheye's, of images that perspective
 // models explain as well without knowing it, or any model's where no board was tilted.
-bool IsGuess(const CalibrationInput& input, const std::vector<BoardFit>& fits, const std::vector<Candidate>& candidates,
-             const CameraCalibration& calibration) {
+bool IsGuess(const CalibrationInput& input, const std::vector<BoardFit>& fits,
+             const std::vector<ModelCandidate>& candidates, const CameraCalibration& calibration) {
   const auto is_fisheye = [](const auto& fit) { return fit.model == CameraModelId::kOpenCvFisheye; };
   const auto tilted = std::ranges::count_if(
       calibration.views, [](const FittedView& view) { return !view.is_outlier && view.tilt_deg >= kSmallestTilt_deg; });
   if (tilted == 0) return true;
-  if (!std::ranges::all_of(candidates, [&](const Candidate& candidate) { return is_fisheye(candidate.fit); }))
+  if (!std::ranges::all_of(candidates, [&](const ModelCandidate& candidate) { return is_fisheye(candidate.fit); }))
     return false;
   double perspective_px = std::numeric_limits<double>::infinity();
   double fisheye_px = std::numeric_limits<double>::infinity();
@@ -367,19 +359,21 @@ Result<CameraCalibration> CalibrateCamera(const CalibrationBoard& board, std::sp
                       " images that differ fit one camera; look for blur, for a board that is not flat, and for zoom "
                       "or focus that changed");
 
-  std::vector<Candidate> candidates;
+  std::vector<ModelCandidate> candidates;
   for (std::size_t i = 0; i < fits->size(); ++i) {
     if (Status status = TellOfModel(progress, "check", i, fits->size()); !status.ok()) return status;
     if (auto candidate = Evaluate(input, outliers, (*fits)[i])) candidates.push_back(*std::move(candidate));
   }
   if (candidates.empty()) return undetermined;
-  std::vector<HeldOutError> held_out;
-  const Candidate& chosen = candidates[Choose(candidates, &held_out)];
+  ModelChosen choice = ChooseModel(candidates);
+  const ModelCandidate& chosen = candidates[choice.chosen];
   CameraCalibration calibration{.camera = chosen.camera};
-  calibration.sigmas = chosen.sigmas;
+  calibration.sigmas = chosen.covariance.Sigmas();
   calibration.views = FittedViews(input, outliers, chosen.fit);
   calibration.rms_px = RmsOf(calibration.views);
-  calibration.held_out = std::move(held_out);
+  calibration.border = BorderAccuracy(candidates, choice);
+  calibration.half_focal_lengths = HalfFocalLengths(input, outliers, chosen.fit);
+  calibration.held_out = std::move(choice.errors);
   if (IsGuess(input, *fits, candidates, calibration)) return undetermined;
   return calibration;
 }

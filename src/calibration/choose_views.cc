@@ -25,6 +25,15 @@ constexpr double kSmallTilt_deg = 25;
 constexpr double kLargeFocalLengthSigma = 0.01;
 constexpr double kManyOutliers = 0.2;
 constexpr double kLargeRms = 0.002;  // of the longer side of the image
+// Of the image's diagonal: 1 px of 640x480. Good images determine its corners to 0.1 to 0.6 px.
+constexpr double kLargeBorderError = 0.00125;
+// Of the way from the principal point to the farthest corner. What the points hide of a distortion's term of fifth
+// order is six times as large in the corner as at the outermost point.
+constexpr double kShortReach = 0.7;
+// A focal length that differs between the halves of the images by so many standard deviations, and by more than matters
+// to a reconstruction.
+constexpr double kChangeSigmas = 3;
+constexpr double kLargeChange = 0.005;
 
 using Outline = std::array<Eigen::Vector2d, 4>;
 
@@ -84,18 +93,84 @@ void ForEachUsedPoint(std::span<const BoardView> views, const CameraCalibration&
   }
 }
 
-// Parts of the image, three by three, without a point: "the upper left, the right".
+// Three by three, row by row.
+constexpr std::array<std::string_view, 9> kPartNames = {
+    "upper left", "top", "upper right", "left", "center", "right", "lower left", "bottom", "lower right"};
+
+// Parts of the image without a point: "the upper left, the right".
 std::string EmptyParts(std::span<const BoardView> views, const CameraCalibration& calibration) {
-  constexpr std::array<std::string_view, 9> kNames = {"upper left", "top",        "upper right", "left",       "center",
-                                                      "right",      "lower left", "bottom",      "lower right"};
   std::array<bool, 9> seen{};
   ForEachUsedPoint(views, calibration, [&](double x, double y) {
     seen[3 * static_cast<std::size_t>(3 * y) + static_cast<std::size_t>(3 * x)] = true;
   });
   std::string parts;
   for (std::size_t i = 0; i < seen.size(); ++i)
-    if (!seen[i]) parts += (parts.empty() ? "the " : ", the ") + std::string(kNames[i]);
+    if (!seen[i]) parts += (parts.empty() ? "the " : ", the ") + std::string(kPartNames[i]);
   return parts;
+}
+
+// A pixel of the border in words.
+std::string BorderName(const Camera& camera, const Eigen::Vector2d& pixel) {
+  const auto third = [](double at, int size) {
+    return static_cast<std::size_t>(std::lround(2 * at / std::max(1, size - 1)));
+  };
+  return "the " + std::string(kPartNames[3 * third(pixel.y(), camera.height()) + third(pixel.x(), camera.width())]);
+}
+
+// How far from the principal point the outermost point lies, by the farthest pixel of the border.
+double Reach(std::span<const BoardView> views, const CameraCalibration& calibration) {
+  const Camera& camera = calibration.camera;
+  const auto center = camera.Project(Eigen::Vector3d::UnitZ());
+  double farthest = 0;
+  for (const PixelAccuracy& place : calibration.border) farthest = std::max(farthest, (place.pixel - *center).norm());
+  double outermost = 0;
+  ForEachUsedPoint(views, calibration, [&](double x, double y) {
+    const Eigen::Vector2d pixel(x * camera.width() - 0.5, y * camera.height() - 0.5);
+    outermost = std::max(outermost, (pixel - *center).norm());
+  });
+  return farthest > 0 ? outermost / farthest : 1;
+}
+
+// Where the image's border is not known well.
+std::vector<std::string> BorderAdvice(std::span<const BoardView> views, const CameraCalibration& calibration) {
+  const Camera& camera = calibration.camera;
+  const double large_px = kLargeBorderError * std::hypot(camera.width(), camera.height());
+  std::vector<std::string> advice;
+  if (const double reach = Reach(views, calibration); reach < kShortReach)
+    advice.push_back("the outermost point of the board is at " + Percent(reach) +
+                     " of the way from the center of the image to its corners, and beyond it the distortion is "
+                     "extrapolated; take images with the board in the corners");
+  if (calibration.border.empty()) return advice;
+  const auto& least_known = *std::ranges::max_element(calibration.border, {}, &PixelAccuracy::sigma_px);
+  if (const std::string where = BorderName(camera, least_known.pixel); std::isinf(least_known.sigma_px)) {
+    advice.push_back("at " + where +
+                     " of the image the distortion folds over, and no ray is seen; take images with the board there");
+  } else if (least_known.sigma_px > large_px) {
+    advice.push_back("at " + where + " of the image the camera is known to " + Digits(least_known.sigma_px, 1) +
+                     " px only (standard deviation); take images with the board there");
+  }
+  const auto& ambiguous = *std::ranges::max_element(calibration.border, {}, &PixelAccuracy::model_gap_px);
+  if (ambiguous.model_gap_px > large_px)
+    advice.push_back("the model " + std::string(EnumName(ambiguous.gap_model)) +
+                     " explains the images as well, and differs by " + Digits(ambiguous.model_gap_px, 1) + " px at " +
+                     BorderName(camera, ambiguous.pixel) + " of the image; take images with the board there");
+  return advice;
+}
+
+// Nothing, or how the focal length changed from the first half of the images to the second.
+std::string ZoomAdvice(const CameraCalibration& calibration) {
+  if (calibration.half_focal_lengths.size() != 2) return "";
+  const FocalLengthEstimate& first = calibration.half_focal_lengths[0];
+  const FocalLengthEstimate& second = calibration.half_focal_lengths[1];
+  const double change_px = std::abs(second.px - first.px);
+  // Halves of images that determine a focal length to s determine their difference to 2 s, with what points of a view
+  // share.
+  const double sigma_px = std::max(std::hypot(first.sigma_px, second.sigma_px), 2 * calibration.FocalLengthSigmaPx());
+  if (change_px < kChangeSigmas * sigma_px || change_px < kLargeChange * calibration.camera.MeanFocalLengthPx())
+    return "";
+  return "the focal length is " + Digits(first.px, 1) + " px in the first half of the images and " +
+         Digits(second.px, 1) + " px in the second (+- " + Digits(sigma_px, 1) +
+         "); calibrate every zoom and focus by itself";
 }
 
 }  // namespace
@@ -153,6 +228,9 @@ std::vector<std::string> CalibrationAdvice(std::span<const BoardView> views, con
   if (const std::string parts = EmptyParts(views, calibration); !parts.empty())
     advice.push_back("no point of the board lies in these parts of the image: " + parts +
                      "; the distortion is not known there");
+  const std::vector<std::string> of_border = BorderAdvice(views, calibration);
+  advice.insert(advice.end(), of_border.begin(), of_border.end());
+  if (const std::string of_zoom = ZoomAdvice(calibration); !of_zoom.empty()) advice.push_back(of_zoom);
   if (sigma > kLargeFocalLengthSigma)
     advice.push_back("the focal length is known to " + Percent(sigma, 1) +
                      " only; take images in which the board is larger and tilted more");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -98,6 +99,10 @@ void Say(const CalibrateSummary& summary) {
   SayParameters(calibration.camera, calibration.sigmas);
   SayResult(Formatted("error         %.3f px RMS", calibration.rms_px));
   SayResult("coverage      " + Percent(summary.covered_share) + " of the image");
+  double border_px = 0;
+  for (const PixelAccuracy& place : calibration.border) border_px = std::max(border_px, place.sigma_px);
+  if (border_px > 0 && std::isfinite(border_px))
+    SayResult(Formatted("border        known to %.2g px where it is known least", border_px));
   for (const std::string& advice : summary.advice) SayNote(advice);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -17,6 +18,7 @@
 #include "pliant/base/parallel.h"
 #include "pliant/base/text.h"
 #include "pliant/calibration/choose_views.h"
+#include "pliant/image/masks.h"
 #include "pliant/io/camera_file.h"
 
 namespace pliant {
@@ -182,6 +184,20 @@ Status CheckSize(const CalibrateRequest& request, const std::vector<cv::Mat>& im
   return Status::Ok();
 }
 
+// Without those pixels of the border where all images are dark: an endoscope shows a disc.
+void RemoveDark(const std::vector<cv::Mat>& images, const Camera& camera, std::vector<PixelAccuracy>* border) {
+  cv::Mat brightest = images.front().clone();
+  for (const cv::Mat& image : images) brightest = cv::max(brightest, image);
+  const cv::Mat dark = DarkBorderMask(brightest, {});
+  const auto scaled = [](double at, int size, int scaled_size) {
+    return static_cast<int>(std::lround(at / std::max(1, size - 1) * (scaled_size - 1)));
+  };
+  std::erase_if(*border, [&](const PixelAccuracy& place) {
+    return dark.at<unsigned char>(scaled(place.pixel.y(), camera.height(), dark.rows),
+                                  scaled(place.pixel.x(), camera.width(), dark.cols)) != 0;
+  });
+}
+
 // One camera of the recording, alone. `source` is what messages call its images.
 Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const CalibrateOptions& options,
                                       const BoardRecording& recording, std::size_t camera, Lenses lenses,
@@ -222,6 +238,7 @@ Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const Cal
     image.view_idx = static_cast<int>(i);
   }
   summary.views = std::move(views);
+  RemoveDark(all, summary.calibration.camera, &summary.calibration.border);
   summary.covered_share = CoveredShare(summary.views, summary.calibration);
   summary.advice = CalibrationAdvice(summary.views, summary.calibration);
   return summary;

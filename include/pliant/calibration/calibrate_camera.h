@@ -8,9 +8,10 @@
 // Views whose residuals are clearly larger than the others' are left out. The model is chosen by held-out views: each
 // group of views is fitted with the others' parameters, its pose from half of its points, and the error of the other
 // half counts; the model with the fewest parameters wins whose error is not larger than the least one by more than a
-// standard error, that of the difference or that of the least one itself. Standard deviations are the larger of the
-// covariance's and of those of a grouped jackknife over the views, which also knows of errors that the points of a view
-// share.
+// standard error, that of the difference or that of the least one itself. A model that contains it and predicts as well
+// wins where both differ clearly at the image's border: points in its middle do not tell models apart that differ
+// there. Standard deviations are the larger of the covariance's and of those of a grouped jackknife over the views,
+// which also knows of errors that the points of a view share; both are widened for few views (Student's t).
 #pragma once
 
 #include <array>
@@ -63,12 +64,32 @@ struct HeldOutError {
   double excess_sigma_px = 0;  // standard error of that mean
 };
 
+// How well it is known where the ray of a pixel is seen.
+struct PixelAccuracy {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double sigma_px = 0;  // standard deviation: the covariance of the parameters carried to this pixel
+  double model_gap_px =
+      0;  // how far away another model sees the ray that predicts held-out views as well; 0: none does
+  CameraModelId gap_model = CameraModelId::kPinhole;  // that model
+};
+
+// By views whose other parameters are held at those of all views.
+struct FocalLengthEstimate {
+  double px = 0;
+  double sigma_px = 0;
+};
+
 struct CameraCalibration {
   Camera camera;
   std::vector<double> sigmas = {};  // standard deviation of each parameter, in Camera::params' order and units
   std::vector<FittedView> views = {};
   double rms_px = 0;                        // of the residuals' lengths, over the views that are not left out
   std::vector<HeldOutError> held_out = {};  // a model each, in EnumNames' order; where one was given, of that one
+  // The image's corners and the middles of its sides, in which the extrapolation is largest. CalibrateImages
+  // leaves out those where all images are dark.
+  std::vector<PixelAccuracy> border = {};
+  // Of the first and the second half of the views that are used, in their order; empty where they are too few.
+  std::vector<FocalLengthEstimate> half_focal_lengths = {};
 
   double FocalLengthSigmaPx() const { return sigmas.front(); }
 };
