@@ -221,7 +221,8 @@ std::optional<MountSigmas> JackknifeSigmas(const StereoInput& input, const std::
     rotation += angle * angle;
   }
   const double share = (static_cast<double>(groups) - 1.0) / static_cast<double>(groups);
-  return MountSigmas{std::sqrt(share * baseline), std::sqrt(share * rotation)};
+  const double student = StudentFactor(static_cast<int>(groups));
+  return MountSigmas{student * std::sqrt(share * baseline), student * std::sqrt(share * rotation)};
 }
 
 Status CheckMount(const Rigid3& right_from_left, double depth_mm) {

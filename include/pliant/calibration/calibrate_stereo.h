@@ -4,7 +4,7 @@
 // How two cameras are mounted on each other, from views of a flat board in both at the same time: bundle adjustment
 // (Ceres) of both cameras' parameters, the pose of one in the other and a pose of the board for every pair, with a
 // robust loss whose scale is the residuals' own. Pairs whose residuals are clearly larger than the others' are left
-// out. Standard deviations are those of a grouped jackknife over the pairs.
+// out. Standard deviations are those of a grouped jackknife over the pairs, widened for few pairs (Student's t).
 #pragma once
 
 #include <span>
