@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "pliant/base/text.h"
 #include "pliant/viewer/output.h"
@@ -82,12 +83,30 @@ void DrawErrors(cairo_t* drawing, const CalibrateSummary& summary, const PixelsT
   }
 }
 
+// The error at the top of the bars: the largest one of an image that is used.
+double TopOfBars(const CameraCalibration& calibration) {
+  double highest = calibration.rms_px;
+  for (const FittedView& view : calibration.views)
+    if (!view.is_outlier) highest = std::max(highest, view.rms_px);
+  return highest;
+}
+
+// Along a bar that is cut at the top, whose middle is at `center`: what it would reach.
+void WriteOnBar(cairo_t* drawing, const Panel& panel, double center, double width, double rms_px) {
+  constexpr double smallest_letters = 5;  // that can be read
+  const double letters = std::min(0.8 * kText, width);
+  if (letters < smallest_letters) return;
+  cairo_save(drawing);
+  cairo_translate(drawing, center + 0.35 * letters, panel.top + panel.height - 0.3 * letters);
+  cairo_rotate(drawing, -0.5 * std::numbers::pi);
+  DrawText(drawing, 0, 0, panel.height, Digits(rms_px, 2), letters);
+  cairo_restore(drawing);
+}
+
 // A bar an image, with the line of all of them together.
 void DrawBars(cairo_t* drawing, const CalibrateSummary& summary, const Panel& panel) {
   const std::vector<FittedView>& views = summary.calibration.views;
-  double highest = summary.calibration.rms_px;
-  for (const FittedView& view : views)
-    if (!view.is_outlier) highest = std::max(highest, view.rms_px);
+  const double highest = TopOfBars(summary.calibration);
   if (!(highest > 0)) return;
   const double step = panel.width / static_cast<double>(views.size());
   const auto height_of = [&](double rms_px) { return panel.height * std::min(1.0, rms_px / highest); };
@@ -97,6 +116,8 @@ void DrawBars(cairo_t* drawing, const CalibrateSummary& summary, const Panel& pa
     cairo_rectangle(drawing, panel.left + step * (static_cast<double>(i) + 0.1), panel.top + panel.height - height,
                     0.8 * step, height);
     cairo_fill(drawing);
+    if (views[i].rms_px > highest)
+      WriteOnBar(drawing, panel, panel.left + step * (static_cast<double>(i) + 0.5), 0.8 * step, views[i].rms_px);
   }
   Use(drawing, kVermillion);
   cairo_set_line_width(drawing, 1.2);
@@ -127,13 +148,10 @@ Status WriteCalibrationFigure(const CalibrateSummary& summary, const std::string
                         DrawErrors(drawing, summary, to_panel);
                         cairo_restore(drawing);
                         DrawFrame(drawing, image);
-                        double highest = 0;
-                        for (const FittedView& view : summary.calibration.views)
-                          highest = std::max(highest, view.rms_px);
                         Use(drawing, kBlack);
                         DrawText(drawing, kPageGap, bars.top - 0.4 * kLine, kPanelWidth,
-                                 "error of each image in px (RMS), up to " + Digits(highest, 2) + "; line: all, " +
-                                     Digits(summary.calibration.rms_px, 2) + "; gray: not used");
+                                 "error of each image in px (RMS), up to " + Digits(TopOfBars(summary.calibration), 2) +
+                                     "; line: all, " + Digits(summary.calibration.rms_px, 2) + "; gray: not used");
                         DrawBars(drawing, summary, bars);
                         DrawFrame(drawing, bars);
                         return Status::Ok();

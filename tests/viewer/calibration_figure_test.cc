@@ -59,6 +59,26 @@ TEST(CalibrationFigure, IsAlsoAVectorDrawing) {
   EXPECT_THAT(ReadFile(folder.Path("a.pdf")).value(), testing::StartsWith("%PDF"));
 }
 
+// Pixels of the bars that are black: letters.
+int CountBlackInBars(const cv::Mat& picture) {
+  constexpr int bars_and_gap = 170;  // without the line of text above
+  int count = 0;
+  for (int y = picture.rows - bars_and_gap; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) count += cv::norm(picture.at<cv::Vec3b>(y, x)) < 90 ? 1 : 0;
+  return count;
+}
+
+TEST(CalibrationFigure, WritesTheErrorOnABarThatIsCut) {
+  const TemporaryFolder folder("calibration_figure_bars");
+  CalibrateSummary summary = Summary();
+  ASSERT_TRUE(WriteCalibrationFigure(summary, folder.Path("whole.png")).ok());
+  summary.calibration.views[2].is_outlier = true;
+  summary.calibration.views[2].rms_px = 19.52;
+  ASSERT_TRUE(WriteCalibrationFigure(summary, folder.Path("cut.png")).ok());
+  EXPECT_EQ(CountBlackInBars(cv::imread(folder.Path("whole.png"))), 0);
+  EXPECT_GT(CountBlackInBars(cv::imread(folder.Path("cut.png"))), 10);
+}
+
 TEST(CalibrationFigure, RefusesAnotherEnding) {
   const Status status = WriteCalibrationFigure(Summary(), "a.gif");
   ASSERT_FALSE(status.ok());
