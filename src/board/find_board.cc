@@ -4,6 +4,7 @@
 #include "pliant/board/find_board.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -12,6 +13,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "board/charuco.h"
+#include "board/grid_order.h"
 
 namespace pliant {
 namespace {
@@ -123,8 +125,11 @@ bool FindCircles(const cv::Mat& gray, const CalibrationBoard& board, std::vector
   const auto most = std::max<std::size_t>(kMaxBlobs, 4 * static_cast<std::size_t>(board.NumPoints()));
   const cv::Ptr<cv::FeatureDetector> blobs = cv::makePtr<Blobs>(params, most);
   const cv::Size size(board.columns, board.rows);
-  return cv::findCirclesGrid(gray, size, *centers, grid, blobs) ||
-         cv::findCirclesGrid(gray, size, *centers, grid | cv::CALIB_CB_CLUSTERING, blobs);
+  // Under a fisheye circles are taken for each other.
+  return std::ranges::any_of(std::array{0, static_cast<int>(cv::CALIB_CB_CLUSTERING)}, [&](int clustering) {
+    return cv::findCirclesGrid(gray, size, *centers, grid | clustering, blobs) &&
+           centers->size() == static_cast<std::size_t>(board.NumPoints()) && AreInOrder(board, *centers);
+  });
 }
 
 // All points of a board that is seen as a whole; none where it is not.
