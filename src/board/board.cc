@@ -64,6 +64,14 @@ std::string CalibrationBoard::Title() const {
          FormatDouble(spacing_mm) + " mm apart)";
 }
 
+std::string CalibrationBoard::Text() const {
+  const int more = kind == BoardKind::kCharuco ? 1 : 0;  // squares than inner corners
+  std::string text = std::string(EnumName(kind)) + ":" + std::to_string(columns + more) + "x" +
+                     std::to_string(rows + more) + ":" + FormatDouble(spacing_mm);
+  if (kind == BoardKind::kCharuco) text += ":" + FormatDouble(marker_mm) + ":" + dictionary;
+  return text;
+}
+
 Result<CalibrationBoard> ParseBoard(std::string_view text) {
   const std::vector<std::string_view> parts = Split(text, ':');
   CalibrationBoard board;

@@ -102,14 +102,19 @@ cv::Point2f Beside(const std::vector<cv::Point3f>& marker_on_board, const Corner
   return marker[0] + u * static_cast<float>(along / side) + v * static_cast<float>(across / side);
 }
 
-// Whether markers that a board of this size has beside each other are beside each other in the image, whatever the
-// lens.
-bool FitLayout(const CalibrationBoard& board, const cv::aruco::CharucoBoard& pattern,
-               const std::vector<Corners>& markers, const std::vector<int>& marker_ids) {
+// Of the markers that a board has beside each other.
+struct LayoutFit {
+  int beside = 0;
+  int fitting = 0;  // those of them that are beside each other in the image, too, whatever the lens
+
+  bool IsGood() const { return 4 * fitting >= 3 * beside; }
+};
+
+LayoutFit FitLayout(const CalibrationBoard& board, const cv::aruco::CharucoBoard& pattern,
+                    const std::vector<Corners>& markers, const std::vector<int>& marker_ids) {
   std::map<int, std::size_t> place;  // in the pattern
   for (std::size_t k = 0; k < pattern.ids.size(); ++k) place[pattern.ids[k]] = k;
-  int beside = 0;
-  int fitting = 0;
+  LayoutFit fit;
   for (std::size_t i = 0; i < markers.size(); ++i)
     for (std::size_t j = 0; j < markers.size(); ++j) {
       const auto one = place.find(marker_ids[i]);
@@ -118,12 +123,41 @@ bool FitLayout(const CalibrationBoard& board, const cv::aruco::CharucoBoard& pat
       const auto& on_board = pattern.objPoints[one->second];
       const cv::Point3f& there = pattern.objPoints[other->second][0];
       if (cv::norm(there - on_board[0]) > 1.5 * board.spacing_mm) continue;
-      ++beside;
+      ++fit.beside;
       const double side_px = cv::norm(markers[i][1] - markers[i][0]);
       const cv::Point2f expected = Beside(on_board, markers[i], {there.x, there.y});
-      fitting += cv::norm(expected - markers[j][0]) < side_px ? 1 : 0;
+      fit.fitting += cv::norm(expected - markers[j][0]) < side_px ? 1 : 0;
     }
-  return 4 * fitting >= 3 * beside;
+  return fit;
+}
+
+// The board of this dictionary whose markers they are: as many rows as the largest number needs, and the columns with
+// which most markers are beside each other.
+std::optional<CalibrationBoard> BoardOfMarkers(const CalibrationBoard& of_dictionary, const cv::Mat& gray) {
+  constexpr int fewest_squares = 4;  // along a side, as a board has them
+  constexpr int most_squares = 20;
+  constexpr int fewest_fitting = 6;  // fewer may be spots that look like markers
+  const cv::Ptr<cv::aruco::CharucoBoard> pattern = OpenCvBoard(of_dictionary);
+  if (!pattern) return std::nullopt;
+  std::vector<Corners> markers;
+  std::vector<int> marker_ids;
+  cv::aruco::detectMarkers(gray, pattern->dictionary, markers, marker_ids);
+  if (marker_ids.empty()) return std::nullopt;
+  const int count = *std::max_element(marker_ids.begin(), marker_ids.end()) + 1;
+  int fitting = fewest_fitting - 1;
+  std::optional<CalibrationBoard> seen;
+  for (int columns = fewest_squares; columns <= most_squares; ++columns) {
+    const int rows = (2 * count + columns - 1) / columns;
+    if (rows < fewest_squares || rows > most_squares) continue;
+    CalibrationBoard board = of_dictionary;
+    board.columns = columns - 1;
+    board.rows = rows - 1;
+    const LayoutFit fit = FitLayout(board, *OpenCvBoard(board), markers, marker_ids);
+    if (!fit.IsGood() || fit.fitting <= fitting) continue;
+    fitting = fit.fitting;
+    seen = board;
+  }
+  return seen;
 }
 
 // Enough of the board's inner corners, and not in one row or column.
@@ -158,7 +192,7 @@ std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard
   std::vector<std::vector<cv::Point2f>> markers;
   std::vector<int> marker_ids;
   cv::aruco::detectMarkers(gray, pattern->dictionary, markers, marker_ids);
-  if (marker_ids.empty() || !FitLayout(board, *pattern, markers, marker_ids)) return std::nullopt;
+  if (marker_ids.empty() || !FitLayout(board, *pattern, markers, marker_ids).IsGood()) return std::nullopt;
   std::vector<cv::Point2f> corners;
   std::vector<int> ids;
   cv::aruco::interpolateCornersCharuco(markers, marker_ids, gray, pattern, corners, ids);
@@ -183,7 +217,17 @@ bool ShowsOtherCharuco(const cv::Mat& gray, const CalibrationBoard& board) {
   cv::aruco::detectMarkers(gray, pattern->dictionary, markers, marker_ids);
   constexpr std::size_t kFewestMarkers = 4;
   return marker_ids.size() >= kFewestMarkers &&
-         (HasUnknownMarkers(board, marker_ids) || !FitLayout(board, *pattern, markers, marker_ids));
+         (HasUnknownMarkers(board, marker_ids) || !FitLayout(board, *pattern, markers, marker_ids).IsGood());
+}
+
+std::optional<CalibrationBoard> SeenCharuco(const cv::Mat& gray, const CalibrationBoard& board) {
+  if (const auto seen = BoardOfMarkers(board, gray)) return seen;
+  for (const auto& [name, dictionary] : kDictionaries) {
+    CalibrationBoard other = board;
+    other.dictionary = name;
+    if (const auto seen = BoardOfMarkers(other, gray)) return seen;
+  }
+  return std::nullopt;
 }
 
 cv::Mat DrawCharuco(const CalibrationBoard& board, int px) {
@@ -197,6 +241,10 @@ cv::Mat DrawCharuco(const CalibrationBoard& board, int px) {
 cv::Mat DrawCharuco(const CalibrationBoard& /*board*/, int /*px*/) { return {}; }
 
 bool ShowsOtherCharuco(const cv::Mat& /*gray*/, const CalibrationBoard& /*board*/) { return false; }
+
+std::optional<CalibrationBoard> SeenCharuco(const cv::Mat& /*gray*/, const CalibrationBoard& /*board*/) {
+  return std::nullopt;
+}
 
 Status CheckCharucoIsSupported(const CalibrationBoard& /*board*/) {
   return {ErrorCode::kInvalidArgument,

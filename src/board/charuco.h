@@ -22,6 +22,10 @@ std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard
 // has, or which are not beside each other as it has them.
 bool ShowsOtherCharuco(const cv::Mat& gray, const CalibrationBoard& board);
 
+// The ChArUco board that the image shows, by how its markers are beside each other: of whatever numbers of squares, and
+// of another dictionary where those of the board's own show none. Its lengths are those of `board`.
+std::optional<CalibrationBoard> SeenCharuco(const cv::Mat& gray, const CalibrationBoard& board);
+
 // The squares and markers of a supported board, CV_8UC1, 0 on 255, `px` pixels to a square's side.
 cv::Mat DrawCharuco(const CalibrationBoard& board, int px);
 

@@ -151,6 +151,27 @@ std::vector<cv::Point2f> FindWholeBoard(const cv::Mat& gray, const CalibrationBo
   return {};
 }
 
+// What circles may be that were taken for those of `board`, the likeliest first.
+std::vector<CalibrationBoard> SimilarCircles(const CalibrationBoard& board) {
+  constexpr int fewest_circles = 3;  // along a side
+  constexpr int most_off = 2;
+  const BoardKind other_kind = board.kind == BoardKind::kCircles ? BoardKind::kAsymmetricCircles : BoardKind::kCircles;
+  std::vector<CalibrationBoard> similar;
+  const auto add = [&](BoardKind kind, int columns, int rows) {
+    if (columns < fewest_circles || rows < fewest_circles) return;
+    if (kind == board.kind && columns == board.columns && rows == board.rows) return;
+    similar.push_back({kind, columns, rows, board.spacing_mm});
+  };
+  for (const BoardKind kind : {board.kind, other_kind}) {
+    add(kind, board.columns, board.rows);
+    add(kind, board.rows, board.columns);
+  }
+  for (int columns = -most_off; columns <= most_off; ++columns)
+    for (int rows = -most_off; rows <= most_off; ++rows)
+      if (columns != 0 || rows != 0) add(board.kind, board.columns + columns, board.rows + rows);
+  return similar;
+}
+
 }  // namespace
 
 Status CheckBoardIsSupported(const CalibrationBoard& board) {
@@ -194,6 +215,23 @@ std::optional<CalibrationBoard> LargerCircles(const cv::Mat& gray, const Calibra
   grows(&CalibrationBoard::columns);
   grows(&CalibrationBoard::rows);
   return larger.NumPoints() > board.NumPoints() ? std::optional(larger) : std::nullopt;
+}
+
+std::optional<CalibrationBoard> SimilarBoard(const cv::Mat& gray, const CalibrationBoard& board) {
+  if (board.kind == BoardKind::kChessboard) return std::nullopt;
+  if (board.kind == BoardKind::kCharuco) {
+    auto seen = SeenCharuco(gray, board);
+    const bool is_other =
+        seen && (seen->columns != board.columns || seen->rows != board.rows || seen->dictionary != board.dictionary);
+    return is_other ? seen : std::nullopt;
+  }
+  const bool is_found = !FindWholeBoard(gray, board).empty();
+  for (const CalibrationBoard& similar : SimilarCircles(board)) {
+    if ((is_found && similar.kind == board.kind) || FindWholeBoard(gray, similar).empty()) continue;
+    const CalibrationBoard whole = LargerCircles(gray, similar).value_or(similar);
+    if (whole.Text() != board.Text()) return whole;
+  }
+  return std::nullopt;
 }
 
 bool ShowsOtherMarkers(const cv::Mat& gray, const CalibrationBoard& board) {

@@ -24,9 +24,10 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kImagesForSize = 9;  // in which larger boards are looked for
-constexpr int kFewestWithAny = 3;          // that tell a size where few images show the board that was given
-constexpr int kFewestCorners = 4 * 5;      // of one that is named: smaller ones are seen in tissue, too
+constexpr std::size_t kImagesForSize = 9;    // in which larger boards are looked for
+constexpr std::size_t kImagesForOthers = 5;  // in which boards of other kinds are looked for, one after the other
+constexpr int kFewestWithAny = 3;            // that tell a size where few images show the board that was given
+constexpr int kFewestCorners = 4 * 5;        // of one that is named: smaller ones are seen in tissue, too
 
 // Whether `larger` is a chessboard of which one of `board`'s size is a part.
 bool IsPart(const CalibrationBoard& board, const ChessboardSize& larger) {
@@ -38,9 +39,9 @@ std::string SizeName(const ChessboardSize& size) {
   return std::to_string(size.longer) + "x" + std::to_string(size.shorter);
 }
 
-// Images that are spread evenly over all of them.
-std::vector<cv::Mat> SomeOf(const std::vector<cv::Mat>& images) {
-  const auto count = std::min(kImagesForSize, images.size());
+// At most `most` images that are spread evenly over all of them.
+std::vector<cv::Mat> SomeOf(const std::vector<cv::Mat>& images, std::size_t most = kImagesForSize) {
+  const auto count = std::min(most, images.size());
   std::vector<cv::Mat> some;
   for (std::size_t i = 0; i < count; ++i) some.push_back(images[i * images.size() / count]);
   return some;
@@ -104,6 +105,25 @@ std::string SeenSentence(const SeenSize& seen, const CalibrationBoard& board) {
          "chessboard:" + SizeName(seen.size) + ":" + FormatDouble(board.spacing_mm);
 }
 
+// "the ... is seen in 7 of the 9 images that were looked at; ...": another board than was said, in most of some images.
+// Empty where there is none.
+Result<std::string> OtherBoard(const std::vector<cv::Mat>& images, const CalibrationBoard& board,
+                               const SecondLook& how) {
+  if (images.empty()) return std::string();
+  const std::vector<cv::Mat> some = SomeOf(images, kImagesForOthers);
+  const auto boards = InEach(some, how, [&](const cv::Mat& image) { return SimilarBoard(image, board); });
+  if (!boards.ok()) return boards.status();
+  std::map<std::string, int> images_of_board;
+  for (const auto& seen : *boards) {
+    if (!seen) continue;
+    const std::string text = seen->Text();
+    if (const int number = ++images_of_board[text]; 2 * number > static_cast<int>(some.size()))
+      return "the " + seen->Title() + " is seen in most of the " + std::to_string(some.size()) +
+             " images that were looked at; if it is yours, give --board " + text;
+  }
+  return std::string();
+}
+
 Result<bool> ShowOtherMarkers(const std::vector<cv::Mat>& images, const CalibrationBoard& board,
                               const SecondLook& how) {
   if (board.kind != BoardKind::kCharuco) return false;
@@ -136,6 +156,9 @@ Status NotSeen(const CalibrateRequest& request, const std::string& source, const
     if (seen->IsOfMost() && seen->size != own && 2 * seen->images > seen->looked_at)
       return {ErrorCode::kInsufficient, sentence + SeenSentence(*seen, board)};
   }
+  const auto other_board = OtherBoard(images, board, how);
+  if (!other_board.ok()) return other_board.status();
+  if (!other_board->empty()) return {ErrorCode::kInsufficient, sentence + *other_board};
   const auto others = ShowOtherMarkers(images, board, how);
   if (!others.ok()) return others.status();
   if (*others) return {ErrorCode::kInsufficient, sentence + OtherMarkers(board)};
@@ -168,7 +191,10 @@ Status CheckSize(const CalibrateRequest& request, const std::vector<cv::Mat>& im
   if (board.kind == BoardKind::kCharuco) {
     const auto others = ShowOtherMarkers(with_board, board, how);
     if (!others.ok()) return others.status();
-    return *others ? Status(ErrorCode::kInsufficient, is_part + OtherMarkers(board)) : Status::Ok();
+    if (!*others) return Status::Ok();
+    const auto other_board = OtherBoard(with_board, board, how);
+    if (!other_board.ok()) return other_board.status();
+    return {ErrorCode::kInsufficient, is_part + (other_board->empty() ? OtherMarkers(board) : *other_board)};
   }
   std::map<std::pair<int, int>, int> images_of_size;
   const std::vector<cv::Mat> some = SomeOf(with_board);
@@ -226,7 +252,13 @@ Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const Cal
   auto calibration =
       CalibrateCamera(request.board, views, size.width, size.height, options.model, options.threads, lenses, progress);
   if (!calibration.ok() && calibration.status().code() == ErrorCode::kInterrupted) return calibration.status();
-  if (!calibration.ok()) return Status(calibration.status().code(), source + ": " + calibration.status().message());
+  if (!calibration.ok()) {
+    // Circles of one kind may be taken for those of the other.
+    const auto other_board = OtherBoard(with_board, request.board, how);
+    if (!other_board.ok()) return other_board.status();
+    return Status(calibration.status().code(),
+                  source + ": " + (other_board->empty() ? calibration.status().message() : *other_board));
+  }
 
   CalibrateSummary summary{.calibration = *std::move(calibration)};
   summary.images_read = recording.images_read;

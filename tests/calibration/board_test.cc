@@ -48,6 +48,11 @@ TEST(Board, ShiftsEverySecondRowOfAsymmetricCircles) {
   EXPECT_EQ(board->Points()[4], Eigen::Vector3d(5, 5, 0));
 }
 
+TEST(Board, SaysWhatItWasReadFrom) {
+  for (const char* text : {"chessboard:9x6:2.5", "charuco:8x5:10:7:5X5_100", "circles:7x6:5", "acircles:4x11:5"})
+    EXPECT_EQ(ParseBoard(text)->Text(), text);
+}
+
 TEST(Board, RefusesWhatIsNoBoardInASentence) {
   for (const char* text :
        {"", "chessboard", "chessboard:9x6", "chessboard:9:2", "chessboard:9x6:0", "chessboard:9x6:-1",

@@ -175,7 +175,42 @@ TEST(FindBoard, TellsACharucoBoardOfAnotherSize) {
                                  {BoardKind::kCharuco, 7, 4, 10.0, 7.0, "5X5_100"}));
 }
 
+TEST(FindBoard, NamesTheCharucoBoardThatIsSeen) {
+  const cv::Mat image = CharucoImage();
+  for (const auto& [columns, rows] : {std::pair(7, 3), std::pair(4, 7), std::pair(6, 4), std::pair(8, 4)}) {
+    const auto seen = SimilarBoard(image, {BoardKind::kCharuco, columns, rows, 10.0, 7.0, "5X5_100"});
+    ASSERT_TRUE(seen.has_value()) << columns << "x" << rows;
+    EXPECT_EQ(seen->Text(), "charuco:8x5:10:7:5X5_100");
+  }
+  const auto of_other_markers = SimilarBoard(image, {BoardKind::kCharuco, 7, 4, 10.0, 7.0, "4X4_50"});
+  ASSERT_TRUE(of_other_markers.has_value());
+  EXPECT_EQ(of_other_markers->Text(), "charuco:8x5:10:7:5X5_50");  // the smallest dictionary that has these markers
+  EXPECT_FALSE(SimilarBoard(image, {BoardKind::kCharuco, 7, 4, 10.0, 7.0, "5X5_100"}));
+}
+
 #endif
+
+TEST(FindBoard, NamesTheCirclesThatAreSeen) {
+  const auto image_of = [](const CalibrationBoard& board) {
+    cv::Mat image(480, 640, CV_8UC1, cv::Scalar(255));
+    for (const Eigen::Vector3d& point : board.Points())
+      cv::circle(image, cv::Point(120 + static_cast<int>(point.x()), 80 + static_cast<int>(point.y())), 12,
+                 cv::Scalar(0), cv::FILLED, cv::LINE_AA);
+    return image;
+  };
+  const CalibrationBoard symmetric = {BoardKind::kCircles, 5, 7, 40.0};
+  const CalibrationBoard asymmetric = {BoardKind::kAsymmetricCircles, 4, 7, 40.0};
+  for (const CalibrationBoard& given : {CalibrationBoard{BoardKind::kAsymmetricCircles, 5, 7, 40.0},
+                                        CalibrationBoard{BoardKind::kCircles, 7, 8, 40.0}}) {
+    const auto seen = SimilarBoard(image_of(symmetric), given);
+    ASSERT_TRUE(seen.has_value()) << given.Title();
+    EXPECT_EQ(seen->kind, BoardKind::kCircles) << given.Title();
+    EXPECT_EQ(seen->NumPoints(), 35) << given.Title();
+  }
+  const auto seen = SimilarBoard(image_of(asymmetric), {BoardKind::kAsymmetricCircles, 7, 4, 40.0});
+  ASSERT_TRUE(seen.has_value());
+  EXPECT_EQ(seen->Text(), "acircles:4x7:40");
+}
 
 TEST(FindBoard, NamesTheNearestDictionaryOrAllOfThem) {
   const auto message = [](const std::string& dictionary) {

@@ -43,6 +43,8 @@ struct CalibrationBoard {
   std::vector<Eigen::Vector3d> Points() const;
   // "chessboard of 9x6 inner corners (2 mm apart)".
   std::string Title() const;
+  // As ParseBoard reads it: "chessboard:9x6:2".
+  std::string Text() const;
 };
 
 // Reads "chessboard:9x6:2.0" (inner corners, square in mm), "charuco:8x5:10:7:5X5_100" (squares, square and marker in

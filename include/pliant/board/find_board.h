@@ -43,6 +43,11 @@ std::optional<ChessboardSize> LargestChessboard(const cv::Mat& gray);
 // is none.
 std::optional<CalibrationBoard> LargerCircles(const cv::Mat& gray, const CalibrationBoard& board);
 
+// A board that is seen where `board` is not: a ChArUco board of other numbers of squares or another dictionary; circles
+// of the other kind, with the numbers of columns and rows exchanged, or one or two more or fewer of them. Its lengths
+// are those of `board`. Nothing where there is none, and for chessboards: LargestChessboard.
+std::optional<CalibrationBoard> SimilarBoard(const cv::Mat& gray, const CalibrationBoard& board);
+
 // Whether markers of a ChArUco board's dictionary are seen, but not those of a board of this size in its order.
 bool ShowsOtherMarkers(const cv::Mat& gray, const CalibrationBoard& board);
 
