@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include "cli/command_line.h"
@@ -111,6 +112,12 @@ void QuietVideoDecoder() { setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
 // A write beyond the limit of a file's size then fails as one to a full disk does, instead of ending the program.
 void SurviveFileSizeLimit() { std::signal(SIGXFSZ, SIG_IGN); }
 
+// Whether nobody reads any more what is written there.
+bool IsClosedPipe(int descriptor) {
+  pollfd stream = {descriptor, POLLOUT, 0};
+  return poll(&stream, 1, 0) == 1 && (stream.revents & (POLLERR | POLLHUP)) != 0;
+}
+
 // Of what a library threw that ran out of memory, or met what it did not expect.
 std::string SentenceOf(const std::exception& error) {
   std::string what = error.what();
@@ -137,7 +144,9 @@ int main(int argc, char** argv) {
     pliant::cli::ProgramVersion() += kCommitText;
     const int exit = pliant::cli::Run(args);
     if (std::cout.flush() || exit != pliant::cli::kExitOk) return exit;
-    pliant::cli::SayError("cannot write to standard output; is the disk full?");
+    // Whoever closed the pipe has read all that was wanted.
+    if (!pliant::cli::IsClosedPipe(STDOUT_FILENO))
+      pliant::cli::SayError("cannot write to standard output; is the disk full?");
     return pliant::cli::kExitFailed;
   } catch (const std::exception& error) {
     pliant::cli::SayError(pliant::cli::SentenceOf(error));

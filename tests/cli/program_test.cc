@@ -3,6 +3,7 @@
 
 // The program's usage: its manual, its options, what a call may not say.
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "cli/program_outcome.h"
 #include "pliant/evaluation/evaluation.h"
@@ -199,6 +201,23 @@ TEST(Program, AFullStandardOutputIsAFailure) {
   const int status = std::system("'" PLIANT_PROGRAM "' track --help >/dev/full 2>/dev/null");
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
+// As of `pliant ... | head`, with SIGPIPE ignored as while a run is made.
+TEST(Program, AClosedPipeEndsItWithoutAWord) {
+  constexpr int output = 9;  // shells duplicate descriptors of one digit
+  int ends[2] = {};
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(dup2(ends[1], output), output);
+  for (const int end : ends) close(end);
+  const auto former = std::signal(SIGPIPE, SIG_IGN);
+  const std::string err = Temporary("err.txt").string();
+  const int status = std::system(("'" PLIANT_PROGRAM "' track --help >&9 2>'" + err + "'").c_str());
+  std::signal(SIGPIPE, former);
+  close(output);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_EQ(ReadText(err), "");
 }
 
 }  // namespace
