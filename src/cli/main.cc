@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -31,6 +33,7 @@ struct Command {
   std::string_view name;
   std::string_view summary;
   int (*run)(std::span<const std::string> args);
+  std::size_t words = 1;  // of a manual's name: "dataset info"
 };
 
 constexpr std::array kCommands = {
@@ -38,7 +41,7 @@ constexpr std::array kCommands = {
     Command{"calibrate", "camera.yaml from images or a video of a calibration board", CalibrateCommand},
     Command{"simulate", "render a scene that deforms, with depth, poses and the paths of its material",
             SimulateCommand},
-    Command{"dataset", "say what a data set holds and what is wrong with it, or convert it", DatasetCommand},
+    Command{"dataset", "say what a data set holds and what is wrong with it, or convert it", DatasetCommand, 2},
     Command{"evaluate", "compare a run with the truth of its sequence, or with other runs", EvaluateCommand},
     Command{"compare", "set runs side by side: Pliant's, COLMAP's, other systems'", CompareCommand},
     Command{"truth", "follow the material that pixels of a simulated sequence show", TruthCommand},
@@ -50,7 +53,7 @@ constexpr std::array kCommands = {
     Command{"export", "write a run in other programs' formats: COLMAP, PLY, TUM, nerfstudio, EndoNeRF, tracks",
             ExportCommand},
     Command{"report", "show runs: a page for the browser, figures, films", ReportCommand},
-    Command{"model", "check a COLMAP model, or convert it between text and binary", ModelCommand},
+    Command{"model", "check a COLMAP model, or convert it between text and binary", ModelCommand, 2},
     Command{"demo", "simulate, track and evaluate a small sequence", DemoCommand},
 };
 
@@ -65,22 +68,32 @@ std::string Usage() {
          "prints the versions of it and of its libraries.\n";
 }
 
+int Run(std::span<const std::string> args);
+
+// The manual of `command`, which begins with its name.
+int Help(std::span<const std::string> command) {
+  const auto known = std::ranges::find(kCommands, command.front(), &Command::name);
+  if (const std::size_t most = known == kCommands.end() ? command.size() : known->words; command.size() > most) {
+    SayError("help is of one command, and '" + command[most] + "' is more than its name; leave it out");
+    return kExitUsage;
+  }
+  std::vector<std::string> args(command.begin(), command.end());
+  args.emplace_back("--help");
+  return Run(args);
+}
+
 int Run(std::span<const std::string> args) {
   if (args.empty()) {
     std::cerr << Usage();
     return kExitUsage;
   }
   const std::string& name = args.front();
-  if (name == "help" && args.size() > 1) {
-    std::vector<std::string> command(args.begin() + 1, args.end());  // "dataset info" are two words
-    command.emplace_back("--help");
-    return Run(command);
-  }
+  if (name == "help" && args.size() > 1) return Help(args.subspan(1));
   if (name == "--help" || name == "--help-all" || name == "-h" || name == "help") {
     std::cout << Usage();
     return kExitOk;
   }
-  if (name == "--version") {
+  if (name == "--version" || name == "version" || name == "-V" || name == "-v") {
     std::cout << "pliant " << ProgramVersion() << "\nbuilt by " << BuildText() << "\nwith " << LibrariesText() << "\n";
     return kExitOk;
   }

@@ -64,7 +64,7 @@ TEST(Program, AnUnknownCommandNamesTheNearestOne) {
   const Outcome outcome = Pliant("trakc");
   EXPECT_EQ(outcome.exit, 2);
   EXPECT_EQ(outcome.err, "pliant: there is no command 'trakc'; did you mean 'track'? pliant --help lists them\n");
-  EXPECT_EQ(Pliant("version").err, "pliant: there is no command 'version'; pliant --help lists them\n");
+  EXPECT_EQ(Pliant("zzzzzzzz").err, "pliant: there is no command 'zzzzzzzz'; pliant --help lists them\n");
 }
 
 TEST(Program, HelpTakesCommandsOfTwoWords) {
@@ -176,6 +176,18 @@ TEST(Program, AMissingArgumentExitsWithTwo) {
     EXPECT_THAT(outcome.err, HasSubstr(std::string(missing) + " "));
     EXPECT_THAT(outcome.err, HasSubstr("is missing"));
   }
+}
+
+TEST(Program, TheVersionHasTheNamesThatItHasElsewhere) {
+  const std::string version = Pliant("--version").out;
+  for (const char* name : {"version", "-V", "-v"}) EXPECT_EQ(Pliant(name).out, version) << name;
+}
+
+TEST(Program, HelpIsOfOneCommand) {
+  EXPECT_EQ(Pliant("help dataset info").out, Pliant("dataset info --help").out);
+  const Outcome outcome = Pliant("help track extra");
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("'extra' is more than its name"));
 }
 
 TEST(Program, AnEndBeforeTheStartExitsWithTwo) {
