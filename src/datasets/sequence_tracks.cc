@@ -203,7 +203,8 @@ Result<SequenceTracks> ReadTracksOfSequence(const TrackFileOptions& options, con
     }
   SequenceTracks tracks{std::move(file->tracks), std::move(file->notes)};
   if (Status status = CheckPixelsInImage(options.path, (*sequence)->camera(), &tracks); !status.ok()) return status;
-  if (file->images.empty())
+  // Images that come one by one come once.
+  if (file->images.empty() && !is_unknown)
     if (Status status = CheckScale(options.path, request, &tracks); !status.ok()) return status;
   std::erase_if(tracks.tracks,
                 [](const PixelTrack& track) { return std::ranges::none_of(track.pixels, &TrackPixel::visible); });

@@ -27,11 +27,18 @@ TEST(IsUtf8, TakesCharactersOfOneToFourBytes) {
 
 TEST(IsUtf8, RefusesOtherBytes) {
   const std::vector<const char*> texts = {
-      "f\xE4lle",                                    // ISO 8859-1
-      "a\x80", "\xC3", "\xE2\x82", "\xC3(",         // without a first or a following byte
-      "\xC0\xAF", "\xE0\x80\xAF", "\xF0\x80\x80\xAF",  // not the shortest form
-      "\xED\xA0\x80", "\xED\xBF\xBF",               // surrogates
-      "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80",    // beyond U+10FFFF
+      "f\xE4lle",  // ISO 8859-1
+      "a\x80",
+      "\xC3",
+      "\xE2\x82",
+      "\xC3(",  // without a first or a following byte
+      "\xC0\xAF",
+      "\xE0\x80\xAF",
+      "\xF0\x80\x80\xAF",  // not the shortest form
+      "\xED\xA0\x80",
+      "\xED\xBF\xBF",  // surrogates
+      "\xF4\x90\x80\x80",
+      "\xF8\x88\x80\x80\x80",  // beyond U+10FFFF
   };
   for (const char* text : texts) EXPECT_FALSE(IsUtf8(text)) << text;
 }
