@@ -59,7 +59,7 @@ def _array(value: Any, name: str) -> Any:
     if array.dtype.kind not in "fiub":
         kind = f"of {array.dtype}" if isinstance(value, np.ndarray) else f"a {type(value).__name__}"
         raise TypeError(f"the array {name!r} is {kind}, not of real numbers; {WANTED}")
-    if isinstance(value, np.ma.MaskedArray) and np.ma.getmaskarray(value).any():
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
         raise ValueError(f"the array {name!r} has masked entries, which a file of tracks has not; give a plain array, and "
                          "set visibility to False there")
     return array

@@ -134,9 +134,9 @@ LayoutFit FitLayout(const CalibrationBoard& board, const cv::aruco::CharucoBoard
 // The board of this dictionary whose markers they are: as many rows as the largest number needs, and the columns with
 // which most markers are beside each other.
 std::optional<CalibrationBoard> BoardOfMarkers(const CalibrationBoard& of_dictionary, const cv::Mat& gray) {
-  constexpr int fewest_squares = 4;  // along a side, as a board has them
-  constexpr int most_squares = 20;
-  constexpr int fewest_fitting = 6;  // fewer may be spots that look like markers
+  constexpr int kFewestSquares = 4;  // along a side, as a board has them
+  constexpr int kMostSquares = 20;
+  constexpr int kFewestFitting = 6;  // fewer may be spots that look like markers
   const cv::Ptr<cv::aruco::CharucoBoard> pattern = OpenCvBoard(of_dictionary);
   if (!pattern) return std::nullopt;
   std::vector<Corners> markers;
@@ -144,11 +144,11 @@ std::optional<CalibrationBoard> BoardOfMarkers(const CalibrationBoard& of_dictio
   cv::aruco::detectMarkers(gray, pattern->dictionary, markers, marker_ids);
   if (marker_ids.empty()) return std::nullopt;
   const int count = *std::max_element(marker_ids.begin(), marker_ids.end()) + 1;
-  int fitting = fewest_fitting - 1;
+  int fitting = kFewestFitting - 1;
   std::optional<CalibrationBoard> seen;
-  for (int columns = fewest_squares; columns <= most_squares; ++columns) {
+  for (int columns = kFewestSquares; columns <= kMostSquares; ++columns) {
     const int rows = (2 * count + columns - 1) / columns;
-    if (rows < fewest_squares || rows > most_squares) continue;
+    if (rows < kFewestSquares || rows > kMostSquares) continue;
     CalibrationBoard board = of_dictionary;
     board.columns = columns - 1;
     board.rows = rows - 1;
@@ -221,11 +221,11 @@ bool ShowsOtherCharuco(const cv::Mat& gray, const CalibrationBoard& board) {
 }
 
 std::optional<CalibrationBoard> SeenCharuco(const cv::Mat& gray, const CalibrationBoard& board) {
-  if (const auto seen = BoardOfMarkers(board, gray)) return seen;
+  if (auto seen = BoardOfMarkers(board, gray)) return seen;
   for (const auto& [name, dictionary] : kDictionaries) {
     CalibrationBoard other = board;
     other.dictionary = name;
-    if (const auto seen = BoardOfMarkers(other, gray)) return seen;
+    if (auto seen = BoardOfMarkers(other, gray)) return seen;
   }
   return std::nullopt;
 }

@@ -153,12 +153,12 @@ std::vector<cv::Point2f> FindWholeBoard(const cv::Mat& gray, const CalibrationBo
 
 // What circles may be that were taken for those of `board`, the likeliest first.
 std::vector<CalibrationBoard> SimilarCircles(const CalibrationBoard& board) {
-  constexpr int fewest_circles = 3;  // along a side
-  constexpr int most_off = 2;
+  constexpr int kFewestCircles = 3;  // along a side
+  constexpr int kMostOff = 2;
   const BoardKind other_kind = board.kind == BoardKind::kCircles ? BoardKind::kAsymmetricCircles : BoardKind::kCircles;
   std::vector<CalibrationBoard> similar;
   const auto add = [&](BoardKind kind, int columns, int rows) {
-    if (columns < fewest_circles || rows < fewest_circles) return;
+    if (columns < kFewestCircles || rows < kFewestCircles) return;
     if (kind == board.kind && columns == board.columns && rows == board.rows) return;
     similar.push_back({kind, columns, rows, board.spacing_mm});
   };
@@ -166,8 +166,8 @@ std::vector<CalibrationBoard> SimilarCircles(const CalibrationBoard& board) {
     add(kind, board.columns, board.rows);
     add(kind, board.rows, board.columns);
   }
-  for (int columns = -most_off; columns <= most_off; ++columns)
-    for (int rows = -most_off; rows <= most_off; ++rows)
+  for (int columns = -kMostOff; columns <= kMostOff; ++columns)
+    for (int rows = -kMostOff; rows <= kMostOff; ++rows)
       if (columns != 0 || rows != 0) add(board.kind, board.columns + columns, board.rows + rows);
   return similar;
 }

@@ -242,9 +242,9 @@ bool Solve(std::span<const Eigen::Vector3d> board_points, std::span<const BoardV
 
 double StudentFactor(int groups) {
   // By degrees of freedom: the quantile of Student's t that holds 68.27 %.
-  constexpr std::array factors = {1.837, 1.321, 1.197, 1.142, 1.111, 1.091, 1.077};
-  static_assert(factors.size() == kMaxGroups - 1);
-  return factors[static_cast<std::size_t>(std::clamp(groups, 2, kMaxGroups)) - 2];
+  constexpr std::array kFactors = {1.837, 1.321, 1.197, 1.142, 1.111, 1.091, 1.077};
+  static_assert(kFactors.size() == kMaxGroups - 1);
+  return kFactors[static_cast<std::size_t>(std::clamp(groups, 2, kMaxGroups)) - 2];
 }
 
 Eigen::MatrixXd Covariance(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,

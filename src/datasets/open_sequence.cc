@@ -8,6 +8,7 @@
 
 #include "datasets/formats.h"
 #include "datasets/image_list.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 

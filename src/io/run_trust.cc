@@ -302,10 +302,10 @@ std::string Advice(const RunSummary& summary) {
                                      : ", or let pliant refine estimate its focal length where the scene is rigid."));
   if (FramesIn(summary, TrackingState::kLost) > 0)
     advice.emplace_back("Where the map was lost, look for tools, smoke and fast motion; a mask over tools helps.");
-  if (summary.median_coverage > 0.0 && summary.median_followed_coverage < kMinCoverage)
+  const bool is_sparse = summary.median_coverage > 0.0 && summary.median_coverage < kMinCoverage;
+  if (is_sparse && summary.median_followed_coverage < kMinCoverage)
     advice.emplace_back("Much of the scene has no point: raise --Corners.max_corners, or check the mask.");
-  else if (summary.median_coverage > 0.0 && summary.median_coverage < kMinCoverage &&
-           ParallaxOfUncertainMaps(summary) < kEnoughParallaxDeg)
+  else if (is_sparse && ParallaxOfUncertainMaps(summary) < kEnoughParallaxDeg)
     advice.emplace_back("Much of the scene has points whose depth is not certain: move the camera sideways.");
   const std::int64_t explained = summary.frames_tracked + FramesIn(summary, TrackingState::kWaitingForReference);
   // A run without any says in its note what the references lacked.

@@ -55,7 +55,7 @@ std::vector<PixelTrack> Followed(double width, double height) {
   for (int k = 0; k < 108; ++k) {
     PixelTrack track{PointId{k}, {}};
     for (int frame_idx = 0; frame_idx < kFilmFrames; ++frame_idx) {
-      const cv::Point2d at = cv::Point2d(20 + 20 * (k % 12), 15 + 20 * (k / 12)) + frame_idx * kMotion_px;
+      const cv::Point2d at = cv::Point2d(cv::Point(20 + 20 * (k % 12), 15 + 20 * (k / 12))) + frame_idx * kMotion_px;
       track.pixels.push_back(
           {frame_idx, {(at.x + 0.5) * width / kFilmWidth - 0.5, (at.y + 0.5) * height / kFilmHeight - 0.5}});
     }

@@ -10,6 +10,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCore>
+#include <ceres/cost_function.h>
 #include <ceres/crs_matrix.h>
 #include <gtest/gtest.h>
 

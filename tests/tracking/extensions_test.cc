@@ -206,7 +206,7 @@ TEST_F(Extensions, ASourceThatLosesAllPointsIsNamedAsTheCause) {
     tracker.EndSequence();
     const std::vector<FrameReport> rest = tracker.Finish();
     ASSERT_FALSE(rest.empty());
-    EXPECT_EQ(rest.back().note, "all points were lost; no image follows the reference");
+    EXPECT_EQ(rest.back().note, "all points were lost") << "the last reference has no image after it";
   }
 }
 
