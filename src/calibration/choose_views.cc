@@ -30,9 +30,12 @@ constexpr double kLargeBorderError = 0.00125;
 // Of the way from the principal point to the farthest corner. What the points hide of a distortion's term of fifth
 // order is six times as large in the corner as at the outermost point.
 constexpr double kShortReach = 0.7;
-// A focal length that differs between the halves of the images by so many standard deviations, and by more than matters
-// to a reconstruction.
-constexpr double kChangeSigmas = 3;
+// A focal length that differs between the halves of the images by so many standard deviations, by those of their
+// points, which know nothing of what the points of a view share, and by those of the views, and by more than matters to
+// a reconstruction. The views' are found without one of eight groups after the other, and a change is a part of them:
+// of two values, each in four of the groups, the difference is 2.6 times what they give.
+constexpr double kChangePointSigmas = 9;
+constexpr double kChangeViewSigmas = 2;
 constexpr double kLargeChange = 0.005;
 
 using Outline = std::array<Eigen::Vector2d, 4>;
@@ -163,11 +166,12 @@ std::string ZoomAdvice(const CameraCalibration& calibration) {
   const FocalLengthEstimate& first = calibration.half_focal_lengths[0];
   const FocalLengthEstimate& second = calibration.half_focal_lengths[1];
   const double change_px = std::abs(second.px - first.px);
-  // Halves of images that determine a focal length to s determine their difference to 2 s, with what points of a view
-  // share.
-  const double sigma_px = std::max(std::hypot(first.sigma_px, second.sigma_px), 2 * calibration.FocalLengthSigmaPx());
-  if (change_px < kChangeSigmas * sigma_px || change_px < kLargeChange * calibration.camera.MeanFocalLengthPx())
-    return "";
+  // Halves of images that determine a focal length to s determine their difference to 2 s.
+  const double sigma_px = 2 * calibration.FocalLengthSigmaPx();
+  const double least_px =
+      std::max({kChangePointSigmas * std::hypot(first.sigma_px, second.sigma_px), kChangeViewSigmas * sigma_px,
+                kLargeChange * calibration.camera.MeanFocalLengthPx()});
+  if (change_px < least_px) return "";
   return "the focal length is " + Digits(first.px, 1) + " px in the first half of the images and " +
          Digits(second.px, 1) + " px in the second (+- " + Digits(sigma_px, 1) +
          "); calibrate every zoom and focus by itself";

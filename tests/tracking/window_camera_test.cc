@@ -149,11 +149,11 @@ TEST(WindowCamera, WithoutAMapItSaysWhetherTheCameraMayStandStill) {
   WindowInitOptions options;
   options.certain_depth_sigma = options.last_depth_sigma = options.max_depth_sigma = 1e-4;
   options.provisional = Switch::kOff;
-  const InitOutcome still = PokedWall(61).Try(options);
-  ASSERT_EQ(still.decision, InitDecision::kNewReference) << still.reason;
-  EXPECT_TRUE(still.camera_may_stand_still) << still.reason;
-  EXPECT_FALSE(still.ambiguous) << "there would be no map if it moved";
-  EXPECT_THAT(still.reason, HasSubstr("camera and scene cannot be told apart"));
+  const InitOutcome held = WavingTracks(61, CameraPath::kHeld).Try(options);
+  ASSERT_EQ(held.decision, InitDecision::kNewReference) << held.reason;
+  EXPECT_TRUE(held.camera_may_stand_still) << held.reason;
+  EXPECT_FALSE(held.ambiguous) << "there would be no map if it moved";
+  EXPECT_THAT(held.reason, HasSubstr("camera and scene cannot be told apart"));
   const InitOutcome moving = WavingTracks(61).Try(options);
   ASSERT_EQ(moving.decision, InitDecision::kNewReference) << moving.reason;
   EXPECT_FALSE(moving.camera_may_stand_still);
