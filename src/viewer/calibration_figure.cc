@@ -93,9 +93,9 @@ double TopOfBars(const CameraCalibration& calibration) {
 
 // Along a bar that is cut at the top, whose middle is at `center`: what it would reach.
 void WriteOnBar(cairo_t* drawing, const Panel& panel, double center, double width, double rms_px) {
-  constexpr double smallest_letters = 5;  // that can be read
+  constexpr double kSmallestLetters = 5;  // that can be read
   const double letters = std::min(0.8 * kText, width);
-  if (letters < smallest_letters) return;
+  if (letters < kSmallestLetters) return;
   cairo_save(drawing);
   cairo_translate(drawing, center + 0.35 * letters, panel.top + panel.height - 0.3 * letters);
   cairo_rotate(drawing, -0.5 * std::numbers::pi);

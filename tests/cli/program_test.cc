@@ -217,16 +217,16 @@ TEST(Program, AFullStandardOutputIsAFailure) {
 
 // As of `pliant ... | head`, with SIGPIPE ignored as while a run is made.
 TEST(Program, AClosedPipeEndsItWithoutAWord) {
-  constexpr int output = 9;  // shells duplicate descriptors of one digit
+  constexpr int kOutput = 9;  // shells duplicate descriptors of one digit
   int ends[2] = {};
   ASSERT_EQ(pipe(ends), 0);
-  ASSERT_EQ(dup2(ends[1], output), output);
+  ASSERT_EQ(dup2(ends[1], kOutput), kOutput);
   for (const int end : ends) close(end);
   const auto former = std::signal(SIGPIPE, SIG_IGN);
   const std::string err = Temporary("err.txt").string();
   const int status = std::system(("'" PLIANT_PROGRAM "' track --help >&9 2>'" + err + "'").c_str());
   std::signal(SIGPIPE, former);
-  close(output);
+  close(kOutput);
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_EQ(ReadText(err), "");

@@ -61,9 +61,9 @@ TEST(CalibrationFigure, IsAlsoAVectorDrawing) {
 
 // Pixels of the bars that are black: letters.
 int CountBlackInBars(const cv::Mat& picture) {
-  constexpr int bars_and_gap = 170;  // without the line of text above
+  constexpr int kBarsAndGap = 170;  // without the line of text above
   int count = 0;
-  for (int y = picture.rows - bars_and_gap; y < picture.rows; ++y)
+  for (int y = picture.rows - kBarsAndGap; y < picture.rows; ++y)
     for (int x = 0; x < picture.cols; ++x) count += cv::norm(picture.at<cv::Vec3b>(y, x)) < 90 ? 1 : 0;
   return count;
 }
