@@ -33,21 +33,17 @@ TEST(WaitingMaps, APartOfItsFramesMakesAMapWeak) {
 }
 
 TEST(WaitingMaps, TheOneThatItsOwnFramesContradictGivesWay) {
-  WaitingMaps maps;
-  maps.Put(Deforming(4, 3));
-  maps.Put(Deforming(2.5, 1));
-  const auto taken = maps.Take();
-  ASSERT_TRUE(taken);
-  EXPECT_EQ(taken->map.outcome.measured.sigma_factor, 1);
-  EXPECT_TRUE(maps.IsEmpty());
+  std::optional<MadeMap> best;
+  PutAside(Deforming(4, 3), &best);
+  PutAside(Deforming(2.5, 1), &best);
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->map.outcome.measured.sigma_factor, 1);
 }
 
 TEST(WaitingMaps, ALongerWindowOfTheReferenceGivesWayToWhatIsMoreCertainInAllWaysAlone) {
   const auto later_one_stays = [](double linear_signal, double sigma_factor, int reference) {
-    WaitingMaps maps;
-    maps.Put(Deforming(2.9, 1));
-    MadeMap later = Deforming(linear_signal, sigma_factor, reference);
-    return !maps.HasBetterThan(later.map.outcome);
+    const MadeMap later = Deforming(linear_signal, sigma_factor, reference);
+    return !WeakMap().HasBetterThan(later.map.outcome, Deforming(2.9, 1));
   };
   EXPECT_TRUE(later_one_stays(4.5, 2, 0));
   EXPECT_FALSE(later_one_stays(2.8, 1, 0));
@@ -63,38 +59,51 @@ MadeMap Rigid(double signal) {
 
 TEST(WaitingMaps, AWeakOneGivesWayToALaterReferencesUnlessThatKnowsLess) {
   for (const double signal : {1.2, 2.8}) {
-    WaitingMaps maps;
-    maps.Put(Deforming(1.8, 1));
-    EXPECT_FALSE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
-    EXPECT_EQ(maps.HasBetterThan(Rigid(signal).map.outcome), signal < 1.8) << signal;
-    maps.Put(Rigid(signal));
-    maps.EndWait();
-    const auto taken = maps.Take();
+    WeakMap weak;
+    EXPECT_FALSE(weak.GiveUpReference(Deforming(1.8, 1), kFramesOfReference, kMaxWaitFrames));
+    EXPECT_EQ(weak.HasBetterThan(Rigid(signal).map.outcome, std::nullopt), signal < 1.8) << signal;
+    const auto taken = weak.EndWait(Rigid(signal));
     ASSERT_TRUE(taken);
     EXPECT_EQ(taken->map.outcome.deforming, signal < 1.8) << signal;
   }
 }
 
 TEST(WaitingMaps, AWeakOneWaitsForLaterReferences) {
-  WaitingMaps maps;
-  maps.Put(Deforming(2.5, 2, 7));
-  EXPECT_FALSE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
-  EXPECT_EQ(maps.WeakSince(), 7);
-  for (int k = 0; k < kFramesOfReference; ++k) maps.CountFrame();
-  EXPECT_FALSE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
-  for (int k = 0; k < kFramesOfReference; ++k) maps.CountFrame();
-  EXPECT_TRUE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
-  EXPECT_TRUE(maps.IsEmpty());
+  WeakMap weak;
+  EXPECT_FALSE(weak.GiveUpReference(Deforming(2.5, 2, 7), kFramesOfReference, kMaxWaitFrames));
+  EXPECT_EQ(weak.Since(), 7);
+  for (int k = 0; k < kFramesOfReference; ++k) weak.CountFrame();
+  EXPECT_FALSE(weak.GiveUpReference(std::nullopt, kFramesOfReference, kMaxWaitFrames));
+  for (int k = 0; k < kFramesOfReference; ++k) weak.CountFrame();
+  EXPECT_TRUE(weak.GiveUpReference(std::nullopt, kFramesOfReference, kMaxWaitFrames));
+  EXPECT_FALSE(weak.IsThere());
 }
 
 TEST(WaitingMaps, DoubtEndsTheWaitOfThoseWhoseOwnSigmasAreWeak) {
   for (const double linear_signal : {1.5, 2.5}) {
-    WaitingMaps maps;
-    maps.Put(Deforming(linear_signal, 2));
-    EXPECT_FALSE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
-    maps.Doubt(true);
-    EXPECT_EQ(maps.WeakSince().has_value(), linear_signal > 2) << linear_signal;
+    WeakMap weak;
+    EXPECT_FALSE(weak.GiveUpReference(Deforming(linear_signal, 2), kFramesOfReference, kMaxWaitFrames));
+    weak.Doubt();
+    EXPECT_EQ(weak.IsThere(), linear_signal > 2) << linear_signal;
   }
+}
+
+TEST(WaitingMaps, AnotherReferencesAmbiguityLeavesMapsOfDeformingWindowsAlone) {
+  std::optional<MadeMap> deforming = Deforming(2.5, 1);
+  DoubtRigidity(&deforming);
+  EXPECT_TRUE(deforming);
+  std::optional<MadeMap> rigid = Rigid(5);
+  DoubtRigidity(&rigid);
+  EXPECT_FALSE(rigid);
+}
+
+TEST(WaitingMaps, DoubtLeavesAReferenceNoMapThatIsUncertainOrOfACameraThatMayStandStill) {
+  for (const bool camera_may_stand_still : {false, true})
+    for (const double signal : {2.5, 4.0}) {
+      std::optional<MadeMap> of_reference = Deforming(signal, 1);
+      Doubt(camera_may_stand_still, &of_reference);
+      EXPECT_EQ(of_reference.has_value(), signal > 3 && !camera_may_stand_still) << signal;
+    }
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ class OneMapAReference final : public Initializer {
   mutable bool made_ = false;
 };
 
-class WeakMap : public TrackerFromImages {
+class WeakMaps : public TrackerFromImages {
  protected:
   // Shows images there and back again until the tracker goes back, and ends the sequence if it never does.
   void Show(const std::vector<double>& signals, bool ambiguous_at_last = false) {
@@ -107,7 +107,7 @@ class WeakMap : public TrackerFromImages {
   int shown_ = 0;
 };
 
-TEST_F(WeakMap, GivesWayToOneOfTheNextReferenceWhoseDepthsStandOut) {
+TEST_F(WeakMaps, GivesWayToOneOfTheNextReferenceWhoseDepthsStandOut) {
   Show({kWeakSignal, kStrongSignal});
   ASSERT_GE(initializer_->references().size(), 2U);
   const int second = initializer_->references()[1];
@@ -117,7 +117,7 @@ TEST_F(WeakMap, GivesWayToOneOfTheNextReferenceWhoseDepthsStandOut) {
     EXPECT_EQ(reports_[static_cast<std::size_t>(k)].state == TrackingState::kInitializing, k < second) << k;
 }
 
-TEST_F(WeakMap, IsTakenAtTheEndWhereNoneStandsOut) {
+TEST_F(WeakMaps, IsTakenAtTheEndWhereNoneStandsOut) {
   Show({kWeakSignal});
   EXPECT_GT(initializer_->references().size(), 2U);
   EXPECT_EQ(shown_, kImagesShown);
@@ -126,12 +126,12 @@ TEST_F(WeakMap, IsTakenAtTheEndWhereNoneStandsOut) {
   EXPECT_LT(*back_, initializer_->references()[1]);
 }
 
-TEST_F(WeakMap, TheBetterOfTwoIsTaken) {
+TEST_F(WeakMaps, TheBetterOfTwoIsTaken) {
   Show({kWeakSignal, 1.2 * kWeakSignal});
   EXPECT_EQ(ReferenceOfMap(), initializer_->references()[1]);
 }
 
-TEST_F(WeakMap, DoesNotWaitForEver) {
+TEST_F(WeakMaps, DoesNotWaitForEver) {
   options_.init.window.last_frame = 6;
   Show({kWeakSignal});
   EXPECT_LT(shown_, kImagesShown);
@@ -139,7 +139,7 @@ TEST_F(WeakMap, DoesNotWaitForEver) {
   EXPECT_EQ(ReferenceOfMap(), 0);
 }
 
-TEST_F(WeakMap, IsForgottenWhereCameraAndSceneCannotBeToldApart) {
+TEST_F(WeakMaps, IsForgottenWhereCameraAndSceneCannotBeToldApart) {
   Show({kWeakSignal, kNoMap}, /*ambiguous_at_last=*/true);
   EXPECT_EQ(ReferenceOfMap(), -1);
   const int second = initializer_->references()[1];
@@ -150,7 +150,7 @@ TEST_F(WeakMap, IsForgottenWhereCameraAndSceneCannotBeToldApart) {
   }
 }
 
-TEST_F(WeakMap, OneWhoseDepthsStandOutDoesNotWait) {
+TEST_F(WeakMaps, OneWhoseDepthsStandOutDoesNotWait) {
   Show({kStrongSignal, 2 * kStrongSignal});
   EXPECT_EQ(ReferenceOfMap(), 0);
   EXPECT_EQ(initializer_->references().size(), 1U);

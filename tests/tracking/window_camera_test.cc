@@ -90,7 +90,7 @@ TEST(WindowCamera, AfterCameraAndSceneCouldNotBeToldApartDepthsOfARigidMapHaveTo
   input.was_ambiguous = true;
   const InitOutcome refused = initializer->Try(input);
   EXPECT_EQ(refused.decision, InitDecision::kWait);
-  EXPECT_THAT(refused.reason, HasSubstr("could not be told apart before this reference"));
+  EXPECT_THAT(refused.reason, HasSubstr("could not be told apart by another reference"));
   const WavingTracks deep(46, CameraPath::kForwards, 0);
   InitInput of_deep{deep.camera, deep.frames, {}};
   of_deep.was_ambiguous = true;

@@ -8,7 +8,6 @@
 #include <limits>
 #include <utility>
 
-#include "tracking/depth_prior/prior_distances.h"
 #include "tracking/image_fault.h"
 #include "tracking/serialize.h"
 
@@ -19,6 +18,19 @@ constexpr std::size_t kAskAlternativeEvery = 5;  // frames
 constexpr int kMaxLate = 2;                      // by handover_frames: later ones are not asked for
 // So many references of WindowInit.last_frame frames have the time to give a better map than a weak one.
 constexpr int kWeakReferences = 3;
+
+// Another reference follows in this step on one that was given up.
+void Join(BootstrapStep next, BootstrapStep* step) {
+  next.events.insert(next.events.begin(), TrackingEvent::kReferenceSpent);
+  if (!step->ambiguity.empty()) {
+    next.ambiguity = std::move(step->ambiguity);
+    next.ambiguous_since_frame_idx = step->ambiguous_since_frame_idx;
+  }
+  step->losses.Add(next.losses);
+  next.losses = std::move(step->losses);
+  next.note = step->note + "; " + next.note;
+  *step = std::move(next);
+}
 
 bool DecidesNothing(const InitOutcome& outcome) {
   return outcome.decision == InitDecision::kWait && !outcome.ambiguous && !outcome.camera_may_stand_still;
@@ -40,11 +52,12 @@ Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, 
       tracks_(tracks),
       oracle_poses_(oracle_poses),
       initializer_(std::move(initializer)),
-      alternative_(std::move(alternative)) {}
+      alternative_(std::move(alternative)),
+      reference_tracks_(camera, options, tracks, initializer_.get()) {}
 
 BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   assert(submap->map.landmarks.empty());
-  waiting_.CountFrame();
+  weak_.CountFrame();
   if (!HasReference()) {
     BootstrapStep step = TakeReference(frame, submap, times);
     const bool is_refused = std::ranges::find(step.events, TrackingEvent::kTooFewCorners) != step.events.end();
@@ -54,7 +67,7 @@ BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, 
   if (submap->IsBlurred(frame, options_, tracks_->abilities())) {
     // A dark or blurred frame is passed over: the points are searched again in the next one.
     ++submap->blurred_frames;
-    return {.tracked = static_cast<int>(frames_.back().observations.size()),
+    return {.tracked = reference_.Points(),
             .note = WithFault("passed over: the image is blurred or dark", ImageFault(frame, submap->previous.gray))};
   }
   submap->blurred_frames = 0;
@@ -66,14 +79,8 @@ BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* su
   BootstrapStep step;
   {
     const StageTimer timer(times, Stage::kInitialize);
-    InitFrame reference{frame.frame_idx, {}};
-    const LocalBrightness brightness(frame.image, frame.mask.valid());
-    if (initializer_->TakesKnownPoints())
-      AddKnownPoints(frame, brightness, &reference);
-    else
-      AddCorners(frame, brightness, options_.corners.max_corners, &reference);
-    step.tracked = static_cast<int>(reference.observations.size());
-    frames_.push_back(std::move(reference));
+    reference_ = reference_tracks_.Take(frame);
+    step.tracked = reference_.Points();
   }
   const int needed =
       tracks_->abilities().adds_always ? std::min(kFewestPoints, options_.min_corners) : options_.min_corners;
@@ -82,7 +89,7 @@ BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* su
     step.note = WithFault((given_up_.frames == 0 ? "no reference yet: " : "no reference since then: ") +
                               NumberOfPoints(step.tracked) + ", of at least " + std::to_string(needed),
                           ImageFault(frame, submap->previous.gray));
-    GiveUpReference(&step);
+    GiveUpReference(&reference_, &step);
   } else {
     TryInitialize(frame, times, &step);
     if (HasReference()) {
@@ -104,21 +111,14 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
   BootstrapStep step;
   {
     const StageTimer timer(times, Stage::kPhotometric);
-    frames_.push_back(FollowedFrame(frame, *submap, &step.losses));
-    step.tracked = static_cast<int>(frames_.back().observations.size());
+    reference_tracks_.Follow(submap->previous, frame, &reference_, &next_, &step.losses);
+    step.tracked = reference_.Points();
   }
   image_fault_ = ImageFault(frame, submap->previous.gray);
   TryInitialize(frame, times, &step);
-  if (!HasReference() && !step.map) {  // the reference is spent: this image becomes the next one
-    BootstrapStep next = TakeReference(frame, submap, times);
-    next.events.insert(next.events.begin(), TrackingEvent::kReferenceSpent);
-    next.ambiguity = std::move(step.ambiguity);
-    next.ambiguous_since_frame_idx = step.ambiguous_since_frame_idx;
-    step.losses.Add(next.losses);
-    next.losses = std::move(step.losses);
-    next.note = step.note + "; " + next.note;
-    step = std::move(next);
-  }
+  if (next_.IsThere()) TryNextReference(frame, times, &step);
+  if (!HasReference() && !step.map) Join(TakeReference(frame, submap, times), &step);
+  if (HasReference() && !has_map_) BeginNextReference(frame, times);
   step.note = WithFault(step.note, image_fault_);
   submap->Remember(frame);
   return step;
@@ -131,29 +131,51 @@ void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, 
     step->note = "the first map catches up";
     step->events.push_back(TrackingEvent::kMapAwaited);
   } else if (auto answer = NextAnswer(frame, times)) {
-    TakeAnswer(*std::move(answer), step);
+    TakeAnswer(*std::move(answer), &reference_, step);
   } else {
-    step->note = last_reason_;
+    step->note = reference_.last_reason;
     step->events.push_back(TrackingEvent::kMapAwaited);
   }
 }
 
-// To this frame or to an earlier one; nothing: none was asked for that long ago.
+// The next reference takes the present one's place if that was given up. Otherwise its map counts alone, which is taken
+// if it is certain.
+void Bootstrapper::TryNextReference(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step) {
+  if (!HasReference()) {
+    MakePresent(&next_);
+    BootstrapStep next{.events = {TrackingEvent::kReferenceFound}, .tracked = reference_.Points()};
+    TryInitialize(frame, times, &next);
+    Join(std::move(next), step);
+    return;
+  }
+  BootstrapStep next{.tracked = next_.Points()};
+  {
+    const StageTimer timer(times, Stage::kInitialize);
+    TakeAnswer(AskInitializers(QuestionOf(next_), frame), &next_, &next);
+  }
+  if (next.map) {
+    next.losses.Add(step->losses);
+    *step = std::move(next);
+  } else if (step->ambiguity.empty()) {
+    step->ambiguity = std::move(next.ambiguity);
+    step->ambiguous_since_frame_idx = next.ambiguous_since_frame_idx;
+  }
+}
+
+// Of the present reference, to this frame or to an earlier one; nothing: none was asked for that long ago.
 std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame& frame, StageTimes* times) {
   const StageTimer timer(times, Stage::kInitialize);
   if (handover_frames_ == 0) {
-    const auto alternative = frames_.size() % kAskAlternativeEvery == 0 ? AlternativeToAsk() : nullptr;
-    const bool knows_depth = frames_.size() == 1 && frame.known_depth_mm;
-    return AskInitializers(frames_, knows_depth ? frame.known_depth_mm() : cv::Mat(), known_depths_, doubts_, frame,
-                           InitMoment::kMoreFollow, alternative.get());
+    Question question = QuestionOf(reference_);
+    if (reference_.frames.size() % kAskAlternativeEvery == 0) question.alternative = AlternativeToAsk();
+    if (reference_.frames.size() == 1 && frame.known_depth_mm) question.reference_depth_mm = frame.known_depth_mm();
+    return AskInitializers(question, frame);
   }
-  const auto step = static_cast<int>(frames_.size());
+  const auto step = static_cast<int>(reference_.frames.size());
   const WorkPlace place = threads_ > 1 ? WorkPlace::kBeside : WorkPlace::kHere;
   if (answers_.size() < static_cast<std::size_t>(kMaxLate * handover_frames_))
     answers_.Ask(step + handover_frames_, place,
-                 [this, frame, frames = frames_, known_depths = known_depths_, doubts = doubts_] {
-                   return AskInitializers(frames, {}, known_depths, doubts, frame, InitMoment::kMoreFollow, nullptr);
-                 });
+                 [this, frame, question = QuestionOf(reference_)] { return AskInitializers(question, frame); });
   if (options_.handover_waits == Switch::kOn) return answers_.Take(step);
   auto answer = answers_.TakeIfThere(step);
   // Where they are late more than one may be there. What an attempt says that decides nothing, the next one says.
@@ -165,18 +187,23 @@ std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame
   return answer;
 }
 
-// Beside tracking it reads only what does not change. `alternative`: null: it is not asked.
-Bootstrapper::Answer Bootstrapper::AskInitializers(const std::vector<InitFrame>& frames,
-                                                   const cv::Mat& reference_depth_mm,
-                                                   const std::vector<double>& known_depths, const Doubts& doubts,
-                                                   const PreparedFrame& last, InitMoment moment,
-                                                   const Initializer* alternative) const {
-  Answer answer{.frames = frames.size(), .last = last};
-  answer.outcome = initializer_->Try({camera_, frames, reference_depth_mm, moment, threads_, known_depths, photometric_,
-                                      doubts.camera_may_stand_still, doubts.was_ambiguous, camera_origin_});
+Bootstrapper::Question Bootstrapper::QuestionOf(const Reference& reference) const {
+  return {.frames = reference.frames,
+          .known_depths = reference.known_depths,
+          .camera_may_stand_still = reference.camera_may_stand_still,
+          .was_ambiguous = was_ambiguous_};
+}
+
+// Beside tracking it reads only what does not change.
+Bootstrapper::Answer Bootstrapper::AskInitializers(const Question& question, const PreparedFrame& last) const {
+  Answer answer{.frames = question.frames.size(), .last = last};
+  answer.outcome = initializer_->Try({camera_, question.frames, question.reference_depth_mm, question.moment, threads_,
+                                      question.known_depths, photometric_, question.camera_may_stand_still,
+                                      question.was_ambiguous, camera_origin_});
   const bool is_settled = answer.outcome.decision == InitDecision::kMap || answer.outcome.ambiguous;
-  if (alternative != nullptr && !is_settled)
-    answer.alternative = alternative->Try({camera_, frames, {}, moment, threads_, {}, photometric_});
+  if (question.alternative != nullptr && !is_settled)
+    answer.alternative =
+        question.alternative->Try({camera_, question.frames, {}, question.moment, threads_, {}, photometric_});
   return answer;
 }
 
@@ -185,11 +212,11 @@ std::shared_ptr<const Initializer> Bootstrapper::AlternativeToAsk() const {
   return would_start_.empty() ? alternative_ : nullptr;
 }
 
-void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
+void Bootstrapper::TakeAnswer(Answer answer, Reference* reference, BootstrapStep* step) {
   // Of an attempt beside tracking, which did not know of the others' doubts (W18).
   const bool is_map =
       answer.outcome.decision == InitDecision::kMap || answer.outcome.decision == InitDecision::kProvisional;
-  if (is_map && answer.outcome.moves_by_depth && doubts_.camera_may_stand_still) {
+  if (is_map && answer.outcome.moves_by_depth && reference->camera_may_stand_still) {
     answer.outcome.decision = InitDecision::kWait;
     answer.outcome.ambiguous = true;
     answer.outcome.reason =
@@ -197,46 +224,54 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
         "and not evenly";
   }
   const InitOutcome& outcome = answer.outcome;
-  last_reason_ = outcome.reason;
+  reference->last_reason = outcome.reason;
   step->note = outcome.reason;
-  TakeAlternative(answer);
+  TakeAlternative(answer, reference);
   switch (outcome.decision) {
     case InitDecision::kMap:
       if (IsWeak(outcome)) {
-        waiting_.Put(MapOf(std::move(answer)));
-        GiveUpReference(step);
+        PutAside(MapOf(std::move(answer), *reference), &reference->provisional);
+        GiveUpReference(reference, step);
       } else {
+        MakePresent(reference);
         FinishMapOrGoBack(std::move(answer), step);
       }
       break;
     case InitDecision::kProvisional:
-      waiting_.Put(MapOf(std::move(answer)));
+      PutAside(MapOf(std::move(answer), *reference), &reference->provisional);
       step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kWait:
       step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kNewReference:
-      TellAmbiguity(outcome, step);
-      if (frames_.size() >= given_up_.frames) given_up_ = {frames_.size(), outcome.reason};
-      doubts_.was_ambiguous |= outcome.ambiguous;
-      GiveUpReference(step);
+      TellAmbiguity(outcome, *reference, step);
+      if (reference->frames.size() >= given_up_.frames) given_up_ = {reference->frames.size(), outcome.reason};
+      if (outcome.ambiguous) {
+        was_ambiguous_ = true;
+        DoubtRigidity(reference == &next_ ? &reference_.provisional : &next_.provisional);
+      }
+      GiveUpReference(reference, step);
       break;
   }
 }
 
 // Of a reference that is given up.
-void Bootstrapper::TellAmbiguity(const InitOutcome& outcome, BootstrapStep* step) const {
-  if (!outcome.ambiguous && !(outcome.camera_may_stand_still && waiting_.IsEmpty())) return;
+void Bootstrapper::TellAmbiguity(const InitOutcome& outcome, const Reference& reference, BootstrapStep* step) const {
+  const bool has_map = reference.provisional || weak_.IsThere();
+  if (!outcome.ambiguous && !(outcome.camera_may_stand_still && !has_map)) return;
   step->ambiguity = outcome.reason;
-  step->ambiguous_since_frame_idx = frames_.front().frame_idx;
+  step->ambiguous_since_frame_idx = reference.frames.front().frame_idx;
 }
 
-void Bootstrapper::TakeAlternative(const Answer& answer) {
+void Bootstrapper::TakeAlternative(const Answer& answer, Reference* reference) {
   // What is less certain, or takes more for granted, is no answer then.
-  if (answer.outcome.ambiguous) waiting_.Doubt(answer.outcome.camera_may_stand_still);
+  if (answer.outcome.ambiguous) {
+    Doubt(answer.outcome.camera_may_stand_still, &reference->provisional);
+    weak_.Doubt();
+  }
   if (answer.outcome.ambiguous || answer.outcome.camera_may_stand_still) ForgetAlternative();
-  doubts_.camera_may_stand_still |= answer.outcome.camera_may_stand_still;
+  reference->camera_may_stand_still |= answer.outcome.camera_may_stand_still;
   if (!answer.alternative || answer.alternative->decision != InitDecision::kMap || AlternativeToAsk() == nullptr)
     return;
   would_start_ = "--Init.method " + std::string(alternative_->name()) + " would have made a map by frame " +
@@ -250,40 +285,67 @@ void Bootstrapper::ForgetAlternative() {
   would_start_.clear();
 }
 
-MadeMap Bootstrapper::MapOf(Answer answer) const {
-  const auto end = frames_.begin() + static_cast<std::ptrdiff_t>(answer.frames);
-  return {{{frames_.begin(), end}, std::move(answer.outcome)}, std::move(answer.last)};
+MadeMap Bootstrapper::MapOf(Answer answer, const Reference& reference) {
+  const auto end = reference.frames.begin() + static_cast<std::ptrdiff_t>(answer.frames);
+  return {{{reference.frames.begin(), end}, std::move(answer.outcome)}, std::move(answer.last)};
 }
 
 // Whether most of its points are still there; where frames do not come again, as many as a map needs.
 bool Bootstrapper::IsFollowed(const FirstMap& map) const {
   const std::vector<InitPosition>& points = map.outcome.frames.back().positions;
-  const auto followed = std::ranges::count_if(
-      points, [&](const InitPosition& point) { return FindById(frames_.back().observations, point.id) != nullptr; });
+  const auto followed = std::ranges::count_if(points, [&](const InitPosition& point) {
+    return FindById(reference_.frames.back().observations, point.id) != nullptr;
+  });
   return 2 * followed >= std::ssize(points) || (handover_frames_ > 0 && followed >= options_.init.window.min_points);
 }
 
-// A map that is provisional itself does not replace a better one that was put aside.
+// A map of the present reference that is provisional itself does not replace a better one that was put aside.
 void Bootstrapper::FinishMapOrGoBack(Answer answer, BootstrapStep* step) {
-  if (answer.outcome.provisional && waiting_.HasBetterThan(answer.outcome)) {
-    waiting_.EndWait();
-    GoBack(*waiting_.Take(), step);
+  if (answer.outcome.provisional && weak_.HasBetterThan(answer.outcome, reference_.provisional)) {
+    GoBack(*weak_.EndWait(std::exchange(reference_.provisional, std::nullopt)), step);
     return;
   }
-  MadeMap made = MapOf(std::move(answer));
+  MadeMap made = MapOf(std::move(answer), reference_);
   if (IsFollowed(made.map))
     FinishMap(std::move(made.map), step);
   else
     Retrack(std::move(made), step);
 }
 
-// To the best map that was put aside, if there is one. A weak one waits where the frames since then can be read again.
-void Bootstrapper::GiveUpReference(BootstrapStep* step) {
+// To the best map that was put aside, if there is one. A weak one waits where the frames since then can be read again;
+// what the next reference had waits for the present one.
+void Bootstrapper::GiveUpReference(Reference* reference, BootstrapStep* step) {
+  if (reference == &next_) {
+    if (auto made = std::exchange(next_.provisional, std::nullopt)) PutAside(*std::move(made), &reference_.provisional);
+    reference_tracks_.Drop(&next_);
+    return;
+  }
   const int max_wait = handover_frames_ == 0 ? kWeakReferences * options_.init.window.last_frame : 0;
-  if (auto made = waiting_.GiveUpReference(static_cast<int>(frames_.size()), max_wait))
+  if (auto made = weak_.GiveUpReference(std::exchange(reference_.provisional, std::nullopt),
+                                        static_cast<int>(reference_.frames.size()), max_wait))
     GoBack(*std::move(made), step);
   else
     DropReference();
+}
+
+// The other one is dropped; what it put aside may still be better.
+void Bootstrapper::MakePresent(Reference* reference) {
+  if (reference == &reference_) return;
+  std::optional<MadeMap> best = std::exchange(reference_.provisional, std::nullopt);
+  if (next_.provisional) PutAside(*std::move(next_.provisional), &best);
+  DropReference();
+  reference_ = std::exchange(next_, {});
+  reference_.provisional = std::move(best);
+}
+
+// Halfway through the present one's time. Frames that do not come again leave no time for more than one.
+void Bootstrapper::BeginNextReference(const PreparedFrame& frame, StageTimes* times) {
+  if (next_.IsThere() || handover_frames_ > 0 || !reference_tracks_.CanOverlap()) return;
+  const int past_half = static_cast<int>(reference_.frames.size()) - 1 - options_.init.window.last_frame / 2;
+  if (past_half < 0 || past_half % options_.top_up_frames != 0) return;
+  const StageTimer timer(times, Stage::kInitialize);
+  next_ = reference_tracks_.Take(frame);
+  if (next_.Points() < options_.min_corners) reference_tracks_.Drop(&next_);
 }
 
 // To a map that was put aside.
@@ -296,20 +358,20 @@ void Bootstrapper::GoBack(MadeMap made, BootstrapStep* step) {
 }
 
 std::optional<int> Bootstrapper::AwaitsMapSince() const {
-  if (const auto since = waiting_.WeakSince()) return since;
-  return HasReference() ? std::optional(frames_.front().frame_idx) : std::nullopt;
+  if (const auto since = weak_.Since()) return since;
+  return HasReference() ? std::optional(reference_.frames.front().frame_idx) : std::nullopt;
 }
 
 // The points of the map are followed again from the frame that it is of.
 void Bootstrapper::Retrack(MadeMap made, BootstrapStep* step) {
-  const bool present = !frames_.empty() && made.frame.frame_idx == frames_.back().frame_idx;
+  const bool present = HasReference() && made.frame.frame_idx == reference_.frames.back().frame_idx;
   Abandon();
   std::erase_if(made.map.frames.back().observations,
                 [&](const InitObservation& seen) { return !tracks_->Resume(seen.id, seen.pixel, made.frame); });
   std::erase_if(made.map.outcome.frames.back().positions, [&](const InitPosition& point) {
     return FindById(made.map.frames.back().observations, point.id) == nullptr;
   });
-  frames_ = made.map.frames;
+  reference_.frames = made.map.frames;
   FinishMap(std::move(made.map), step);
   if (!present) step->map_frame = std::move(made.frame);
 }
@@ -318,22 +380,24 @@ void Bootstrapper::Retrack(MadeMap made, BootstrapStep* step) {
 void Bootstrapper::FinishMap(FirstMap map, BootstrapStep* step) {
   for (const InitRejectedPoint& rejected : map.outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
-  waiting_.DropAll();
-  doubts_ = {};
+  weak_.Drop();
+  was_ambiguous_ = false;
   given_up_ = {};
   ForgetAlternative();
   map.outcome.decision = InitDecision::kMap;
   oracle_poses_->TakeWorld({camera_, map.frames, {}}, &map.outcome);
-  has_map_ = step->has_to_catch_up = map.frames.size() < frames_.size();
+  has_map_ = step->has_to_catch_up = map.frames.size() < reference_.frames.size();
   answers_.Drop();
   step->map = std::move(map);
+  reference_tracks_.Drop(&next_);
+  reference_.provisional.reset();
   if (has_map_) return;
-  frames_.clear();
+  reference_ = {};
   step->events.push_back(TrackingEvent::kMapCreated);
 }
 
 void Bootstrapper::Release() {
-  frames_.clear();
+  reference_ = {};
   has_map_ = false;
 }
 
@@ -341,134 +405,57 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   BootstrapStep step;
   const StageTimer timer(times, Stage::kInitialize);
   while (auto answer = answers_.Take(std::numeric_limits<int>::max())) {
-    TakeAnswer(*std::move(answer), &step);
+    TakeAnswer(*std::move(answer), &reference_, &step);
     if (step.map || !HasReference()) return step;
   }
-  if (!HasReference()) {
-    waiting_.EndWait();
-    if (auto made = waiting_.Take()) GoBack(*std::move(made), &step);
-    return step;
-  }
-  PreparedFrame last;
-  last.frame_idx = frames_.back().frame_idx;
-  const auto alternative = waiting_.IsEmpty() ? AlternativeToAsk() : nullptr;
-  Answer answer = AskInitializers(frames_, {}, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
-  // What a reference of the last few images lacks says less than why one that lasted longer was given up.
-  const bool says_less = frames_.size() < given_up_.frames && !answer.outcome.ambiguous;
-  step.note = WithFault(says_less ? given_up_.reason : answer.outcome.reason, image_fault_);
-  TakeAlternative(answer);
-  waiting_.EndWait();
-  if (answer.outcome.decision == InitDecision::kNewReference) TellAmbiguity(answer.outcome, &step);
-  if (answer.outcome.decision == InitDecision::kMap)
-    FinishMapOrGoBack(std::move(answer), &step);
-  else if (auto made = waiting_.Take())
-    GoBack(*std::move(made), &step);
+  if (HasReference()) AttemptLast(&reference_, &step);
+  if (next_.IsThere() && !step.map) AttemptLast(&next_, &step);
+  if (step.map) return step;
+  if (next_.provisional) PutAside(*std::exchange(next_.provisional, std::nullopt), &reference_.provisional);
+  if (auto made = weak_.EndWait(std::exchange(reference_.provisional, std::nullopt))) GoBack(*std::move(made), &step);
   return step;
+}
+
+void Bootstrapper::AttemptLast(Reference* reference, BootstrapStep* step) {
+  PreparedFrame last;
+  last.frame_idx = reference->frames.back().frame_idx;
+  Question question = QuestionOf(*reference);
+  question.moment = InitMoment::kLastFrame;
+  if (!reference->provisional && !weak_.IsThere()) question.alternative = AlternativeToAsk();
+  Answer answer = AskInitializers(question, last);
+  // What a reference of the last few images lacks says less than why one that lasted longer was given up.
+  const bool says_less = reference->frames.size() < given_up_.frames && !answer.outcome.ambiguous;
+  if (!says_less) given_up_ = {reference->frames.size(), answer.outcome.reason};
+  step->note = WithFault(given_up_.reason, image_fault_);
+  TakeAlternative(answer, reference);
+  if (answer.outcome.decision == InitDecision::kNewReference && step->ambiguity.empty())
+    TellAmbiguity(answer.outcome, *reference, step);
+  if (answer.outcome.decision != InitDecision::kMap) return;
+  MakePresent(reference);
+  FinishMapOrGoBack(std::move(answer), step);
 }
 
 void Bootstrapper::Abandon() {
   DropReference();
-  waiting_.DropAll();
+  reference_tracks_.Drop(&next_);
+  weak_.Drop();
   given_up_ = {};
 }
 
+// The present one.
 void Bootstrapper::DropReference() {
-  if (!frames_.empty())
-    for (const InitObservation& seen : frames_.back().observations) tracks_->Remove(seen.id);
-  frames_.clear();
-  known_depths_.clear();
-  waiting_.DropReference();
-  doubts_.camera_may_stand_still = false;
+  reference_tracks_.Drop(&reference_);
   has_map_ = false;
-  last_reason_ = "the first map is attempted beside tracking";
   answers_.Drop();
-}
-
-// Constant velocity in the image: there is no map yet.
-std::vector<PointPrediction> Bootstrapper::PredictPixels(int frame_idx) const {
-  const std::vector<InitObservation>& last = frames_.back().observations;
-  const std::vector<Eigen::Vector2d> from = PixelsOf(last);
-  std::vector<Eigen::Vector2d> to = from;
-  if (frames_.size() >= 2) {
-    const InitFrame& earlier = frames_[frames_.size() - 2];
-    const double steps =
-        static_cast<double>(frame_idx - frames_.back().frame_idx) / (frames_.back().frame_idx - earlier.frame_idx);
-    for (std::size_t k = 0; k < last.size(); ++k)
-      if (const InitObservation* before = FindById(earlier.observations, last[k].id); before != nullptr)
-        to[k] = (1 + steps) * last[k].pixel - steps * before->pixel;
-  }
-  const std::vector<Eigen::Matrix2d> affines = NeighborhoodAffines(from, to);
-  std::vector<PointPrediction> predictions;
-  for (std::size_t k = 0; k < last.size(); ++k) predictions.push_back({last[k].id, to[k], affines[k]});
-  return predictions;
-}
-
-// Adds new points away from those that are there.
-void Bootstrapper::AddCorners(const PreparedFrame& frame, const LocalBrightness& brightness, int max_corners,
-                              InitFrame* points) {
-  if (max_corners <= 0) return;
-  const std::vector<Eigen::Vector2d> existing = PixelsOf(points->observations);
-  CornerOptions corners = options_.corners;
-  corners.max_corners = max_corners;
-  const PriorDistances prior(frame, camera_, options_.depth_prior);
-  for (const NewTrack& track : tracks_->AddNew(frame, existing, corners))
-    points->observations.push_back({track.id, track.pixel, 1.0, brightness.At(track.pixel),
-                                    ColorAt(frame.image, track.pixel), prior.LogAt(track.pixel)});
-  std::ranges::sort(points->observations, {}, &InitObservation::id);
-}
-
-void Bootstrapper::AddKnownPoints(const PreparedFrame& frame, const LocalBrightness& brightness, InitFrame* points) {
-  if (!frame.known_points) return;
-  std::vector<std::pair<InitObservation, double>> added;
-  for (const PixelDepth& known : frame.known_points()) {
-    if (static_cast<int>(added.size()) == options_.corners.max_corners) break;
-    const auto id = tracks_->Add(known.pixel, frame);
-    if (!id) continue;
-    added.push_back(
-        {{*id, known.pixel, 1.0, brightness.At(known.pixel), ColorAt(frame.image, known.pixel)}, known.depth});
-  }
-  std::ranges::sort(added, {}, [](const auto& point) { return point.first.id; });
-  for (const auto& [observation, depth] : added) {
-    points->observations.push_back(observation);
-    known_depths_.push_back(depth);
-  }
-}
-
-// The reference's points in this frame, and every Nth frame, or whenever the source has them, new ones where there are
-// none.
-InitFrame Bootstrapper::FollowedFrame(const PreparedFrame& frame, const Submap& submap, LossCounts* losses) {
-  InitFrame followed{frame.frame_idx, {}};
-  const LocalBrightness brightness(frame.image, frame.mask.valid());
-  const PriorDistances prior(frame, camera_, options_.depth_prior);
-  std::vector<PointId> kept;
-  for (const PointTrack& track : tracks_->Track(submap.previous, frame, PredictPixels(frame.frame_idx))) {
-    if (track.failure == PatchFailure::kNone) {
-      followed.observations.push_back({track.id, track.pixel, track.ssim, brightness.At(track.pixel),
-                                       ColorAt(frame.image, track.pixel), prior.LogAt(track.pixel)});
-      kept.push_back(track.id);
-    } else {
-      tracks_->Remove(track.id);
-      // The source knows no more of what a map rejects that catches up.
-      if (track.failure != PatchFailure::kUnknownPoint) losses->Add(EnumName(track.failure), 1);
-    }
-  }
-  tracks_->Keep(kept);
-  const bool is_due =
-      tracks_->abilities().adds_always || frames_.size() % static_cast<std::size_t>(options_.top_up_frames) == 0;
-  if (initializer_->TakesLaterPoints() && is_due)
-    AddCorners(frame, brightness, options_.corners.max_corners - static_cast<int>(kept.size()), &followed);
-  return followed;
 }
 
 void Bootstrapper::Serialize(StateArchive& archive) {
   bool asks_alternative = alternative_ != nullptr;
   archive(asks_alternative);
   if (!asks_alternative) alternative_.reset();
-  archive(has_map_, frames_, known_depths_, image_fault_, waiting_, doubts_, would_start_, last_reason_, given_up_,
-          answers_);
+  archive(has_map_, reference_, next_, image_fault_, weak_, was_ambiguous_, would_start_, given_up_, answers_);
 }
 void Bootstrapper::GivenUp::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
-void Bootstrapper::Doubts::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 void Bootstrapper::Answer::Serialize(StateArchive& archive) { archive.Members<4>(*this); }
 
 }  // namespace pliant

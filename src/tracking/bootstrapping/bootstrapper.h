@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // From the reference image to the first map: takes a reference, follows its points, and asks the initializer in every
-// frame. It works on the submap that awaits its map and returns what it found; the map is made by the caller.
+// frame. When a reference has had half of its time the next one is begun beside it, so that a map does not depend on
+// where references happen to begin. It works on the submap that awaits its map and returns what it found; the map is
+// made by the caller.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +22,8 @@
 #include "pliant/tracking/tracker_options.h"
 #include "pliant/tracking/tracks/track_source.h"
 #include "tracking/bootstrapping/first_map.h"
+#include "tracking/bootstrapping/reference.h"
+#include "tracking/bootstrapping/reference_tracks.h"
 #include "tracking/bootstrapping/waiting_maps.h"
 #include "tracking/frame/oracle_poses.h"
 #include "tracking/submap/submap.h"
@@ -65,7 +69,7 @@ class Bootstrapper {
   // Gives the reference up, its points, and what earlier references left.
   void Abandon();
   // While a map catches up: the frames since the reference, of which the last may be the present one.
-  const std::vector<InitFrame>& followed() const { return frames_; }
+  const std::vector<InitFrame>& followed() const { return reference_.frames; }
   // It has caught up: its points are others' now.
   void Release();
 
@@ -75,7 +79,7 @@ class Bootstrapper {
 
   void Serialize(StateArchive& archive);
 
-  bool HasReference() const { return !frames_.empty(); }
+  bool HasReference() const { return reference_.IsThere(); }
   // The first frame for which a map may still come that was put aside, or is made: a reference. Nothing: there is none.
   std::optional<int> AwaitsMapSince() const;
 
@@ -83,12 +87,6 @@ class Bootstrapper {
   BootstrapStep TakeReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
   BootstrapStep FollowReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
   std::string NumberOfPoints(int count) const;
-  // Whether the camera moves at all, as answers said.
-  struct Doubts {
-    bool camera_may_stand_still = false;  // since the reference
-    bool was_ambiguous = false;           // when an earlier reference was given up, since the last map
-    void Serialize(StateArchive& archive);
-  };
   // The reference that lasted longest of those that were given up since the last map: what it lacked says most.
   struct GivenUp {
     std::size_t frames = 0;  // 0: none was given up
@@ -104,28 +102,38 @@ class Bootstrapper {
     void Serialize(StateArchive& archive);
   };
 
-  Answer AskInitializers(const std::vector<InitFrame>& frames, const cv::Mat& reference_depth_mm,
-                         const std::vector<double>& known_depths, const Doubts& doubts, const PreparedFrame& last,
-                         InitMoment moment, const Initializer* alternative) const;
+  // What the initializers are asked of a reference.
+  struct Question {
+    std::vector<InitFrame> frames;
+    std::vector<double> known_depths;
+    bool camera_may_stand_still = false;
+    bool was_ambiguous = false;
+    cv::Mat reference_depth_mm = {};
+    InitMoment moment = InitMoment::kMoreFollow;
+    std::shared_ptr<const Initializer> alternative = nullptr;  // null: it is not asked
+  };
+
+  Question QuestionOf(const Reference& reference) const;
+  Answer AskInitializers(const Question& question, const PreparedFrame& last) const;
   std::shared_ptr<const Initializer> AlternativeToAsk() const;
   std::optional<Answer> NextAnswer(const PreparedFrame& frame, StageTimes* times);
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
-  void TakeAnswer(Answer answer, BootstrapStep* step);
-  void TellAmbiguity(const InitOutcome& outcome, BootstrapStep* step) const;
-  void TakeAlternative(const Answer& answer);
+  void TryNextReference(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
+  void TakeAnswer(Answer answer, Reference* reference, BootstrapStep* step);
+  void TellAmbiguity(const InitOutcome& outcome, const Reference& reference, BootstrapStep* step) const;
+  void TakeAlternative(const Answer& answer, Reference* reference);
   void ForgetAlternative();
-  MadeMap MapOf(Answer answer) const;
+  static MadeMap MapOf(Answer answer, const Reference& reference);
   bool IsFollowed(const FirstMap& map) const;
   void FinishMap(FirstMap map, BootstrapStep* step);
   void FinishMapOrGoBack(Answer answer, BootstrapStep* step);
-  void GiveUpReference(BootstrapStep* step);
+  void AttemptLast(Reference* reference, BootstrapStep* step);
+  void GiveUpReference(Reference* reference, BootstrapStep* step);
   void DropReference();
+  void BeginNextReference(const PreparedFrame& frame, StageTimes* times);
+  void MakePresent(Reference* reference);
   void GoBack(MadeMap made, BootstrapStep* step);
   void Retrack(MadeMap made, BootstrapStep* step);
-  std::vector<PointPrediction> PredictPixels(int frame_idx) const;
-  void AddCorners(const PreparedFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
-  void AddKnownPoints(const PreparedFrame& frame, const LocalBrightness& brightness, InitFrame* points);
-  InitFrame FollowedFrame(const PreparedFrame& frame, const Submap& submap, LossCounts* losses);
 
   Camera camera_;
   TrackerOptions options_;
@@ -137,15 +145,15 @@ class Bootstrapper {
   OraclePoses* oracle_poses_;
   std::shared_ptr<const Initializer> initializer_;
   std::shared_ptr<const Initializer> alternative_;
+  ReferenceTracks reference_tracks_;
 
-  bool has_map_ = false;              // one that catches up
-  std::vector<InitFrame> frames_;     // since the reference; empty: there is none
-  std::vector<double> known_depths_;  // of the reference's points, where they are known
-  std::string image_fault_;           // of the last frame
-  WaitingMaps waiting_;               // provisional ones
-  Doubts doubts_;
+  bool has_map_ = false;        // one that catches up
+  Reference reference_;         // the present one
+  Reference next_;              // takes its place when it is given up
+  std::string image_fault_;     // of the last frame
+  WeakMap weak_;                // of references that were given up
+  bool was_ambiguous_ = false;  // when a reference was given up, since the last map
   std::string would_start_;
-  std::string last_reason_;  // of the last answer
   GivenUp given_up_;
   DelayedAnswers<Answer> answers_;  // steps: the number of frames since the reference; ends before what it reads
 };

@@ -46,52 +46,50 @@ bool IsWeak(const InitOutcome& map) {
          map.measured.LinearDepthSignal() < kMinDepthSignal;
 }
 
-void WaitingMaps::CountFrame() {
-  if (weak_) ++weak_frames_;
+void PutAside(MadeMap made, std::optional<MadeMap>* best) {
+  if (!*best || !IsBetter((*best)->map.outcome, made.map.outcome)) *best = std::move(made);
 }
 
-void WaitingMaps::Put(MadeMap made) {
-  if (!of_reference_ || !IsBetter(of_reference_->map.outcome, made.map.outcome)) of_reference_ = std::move(made);
+void Doubt(bool camera_may_stand_still, std::optional<MadeMap>* of_reference) {
+  const bool is_uncertain = *of_reference && (*of_reference)->map.outcome.measured.DepthSignal() < kMinDepthSignal;
+  if (is_uncertain || camera_may_stand_still) of_reference->reset();
 }
 
-bool WaitingMaps::HasBetterThan(const InitOutcome& map) const {
-  return (of_reference_ && IsBetter(of_reference_->map.outcome, map)) || (weak_ && IsBetter(weak_->map.outcome, map));
+void DoubtRigidity(std::optional<MadeMap>* of_reference) {
+  if (*of_reference && !AllowsDeformation((*of_reference)->map.outcome)) of_reference->reset();
 }
 
-std::optional<MadeMap> WaitingMaps::GiveUpReference(int reference_frames, int max_frames) {
-  if (!weak_) weak_frames_ = reference_frames;
-  EndWait();
-  const bool waits = of_reference_ && IsWeak(of_reference_->map.outcome) && weak_frames_ < max_frames;
-  if (waits) weak_ = std::exchange(of_reference_, std::nullopt);
-  return Take();
+void WeakMap::CountFrame() {
+  if (weak_) ++frames_;
 }
 
-void WaitingMaps::EndWait() {
+bool WeakMap::HasBetterThan(const InitOutcome& map, const std::optional<MadeMap>& of_reference) const {
+  return (of_reference && IsBetter(of_reference->map.outcome, map)) || (weak_ && IsBetter(weak_->map.outcome, map));
+}
+
+std::optional<MadeMap> WeakMap::GiveUpReference(std::optional<MadeMap> of_reference, int reference_frames,
+                                                int max_frames) {
+  if (!weak_) frames_ = reference_frames;
+  std::optional<MadeMap> best = EndWait(std::move(of_reference));
+  if (best && IsWeak(best->map.outcome) && frames_ < max_frames) weak_ = std::exchange(best, std::nullopt);
+  return best;
+}
+
+std::optional<MadeMap> WeakMap::EndWait(std::optional<MadeMap> of_reference) {
   auto weak = std::exchange(weak_, std::nullopt);
-  if (weak && (!of_reference_ || IsBetter(weak->map.outcome, of_reference_->map.outcome)))
-    of_reference_ = std::move(weak);
+  if (weak && (!of_reference || IsBetter(weak->map.outcome, of_reference->map.outcome))) return weak;
+  return of_reference;
 }
 
-std::optional<MadeMap> WaitingMaps::Take() { return std::exchange(of_reference_, std::nullopt); }
-
-void WaitingMaps::Doubt(bool camera_may_stand_still) {
-  const bool is_uncertain = of_reference_ && of_reference_->map.outcome.measured.DepthSignal() < kMinDepthSignal;
-  if (is_uncertain || camera_may_stand_still) of_reference_.reset();
+void WeakMap::Doubt() {
   if (weak_ && weak_->map.outcome.measured.LinearDepthSignal() < kMinProvisionalSignal) weak_.reset();
 }
 
-void WaitingMaps::DropReference() { of_reference_.reset(); }
-
-void WaitingMaps::DropAll() {
-  of_reference_.reset();
-  weak_.reset();
-}
-
-std::optional<int> WaitingMaps::WeakSince() const {
+std::optional<int> WeakMap::Since() const {
   return weak_ ? std::optional(weak_->map.frames.front().frame_idx) : std::nullopt;
 }
 
 void MadeMap::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
-void WaitingMaps::Serialize(StateArchive& archive) { archive(of_reference_, weak_, weak_frames_); }
+void WeakMap::Serialize(StateArchive& archive) { archive(weak_, frames_); }
 
 }  // namespace pliant

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Maps that an initializer made and that are not taken yet, because a better one may come: the best provisional one
-// since the reference, and the best weak one of references that were given up.
+// Maps that an initializer made and that are not taken yet, because a better one may come: the best provisional one of
+// a reference, and the best weak one of references that were given up.
 #pragma once
 
 #include <optional>
@@ -25,38 +25,41 @@ struct MadeMap {
 // sigmas, and by those of a part of its frames (W21) not even provisional. It waits for what later references give.
 bool IsWeak(const InitOutcome& map);
 
-class WaitingMaps {
+// Puts a map aside: of two, the one whose depths stand out most from their uncertainty is kept, or the one that knows
+// of a deformation.
+void PutAside(MadeMap made, std::optional<MadeMap>* best);
+// Camera and scene cannot be told apart by a reference: what is less certain is no answer then, nor is anything of it
+// if the camera may stand still.
+void Doubt(bool camera_may_stand_still, std::optional<MadeMap>* of_reference);
+// (W20) Camera and scene could not be told apart by another reference: a map of a rigid window, whose sigmas know
+// nothing of a deformation, is no answer then.
+void DoubtRigidity(std::optional<MadeMap>* of_reference);
+
+// The best weak map. In what follows `of_reference` is the map that a reference put aside, if there is one.
+class WeakMap {
  public:
   // A frame came.
   void CountFrame();
-  // Puts a map of the present reference aside: the one whose depths stand out most from their uncertainty is kept, or
-  // the one that knows of a deformation.
-  void Put(MadeMap made);
-  // Whether there is a map, of the present reference or a weak one, that is better than this one.
-  bool HasBetterThan(const InitOutcome& map) const;
-  // The present reference is given up, after so many frames: the map to take now, if there is one. A weak one stays
-  // here for up to `max_frames` frames, counted from the first reference that had one.
-  std::optional<MadeMap> GiveUpReference(int reference_frames, int max_frames);
-  // No frame will follow: the best of all becomes one of the present reference.
-  void EndWait();
-  // The best map of the present reference, or nothing; it is no longer here.
-  std::optional<MadeMap> Take();
-  // Camera and scene cannot be told apart: what is less certain is no answer then, nor is anything of this reference if
-  // the camera may stand still. A map of an earlier one that a part of its frames alone made weak (W21) stays.
-  void Doubt(bool camera_may_stand_still);
-  void DropReference();
-  void DropAll();
+  // Whether this one, or that of the reference, is better than `map`.
+  bool HasBetterThan(const InitOutcome& map, const std::optional<MadeMap>& of_reference) const;
+  // A reference is given up, after so many frames: the map to take now, if there is one. A weak one stays here for up
+  // to `max_frames` frames, counted from the first reference that had one.
+  std::optional<MadeMap> GiveUpReference(std::optional<MadeMap> of_reference, int reference_frames, int max_frames);
+  // None waits any longer: the best of all.
+  std::optional<MadeMap> EndWait(std::optional<MadeMap> of_reference);
+  // Camera and scene cannot be told apart. One that a part of its frames alone made weak (W21) stays.
+  void Doubt();
+  void Drop() { weak_.reset(); }
 
-  bool IsEmpty() const { return !of_reference_ && !weak_; }
-  // The first frame of the weak map that waits.
-  std::optional<int> WeakSince() const;
+  bool IsThere() const { return weak_.has_value(); }
+  // Its first frame.
+  std::optional<int> Since() const;
 
   void Serialize(StateArchive& archive);
 
  private:
-  std::optional<MadeMap> of_reference_;
   std::optional<MadeMap> weak_;
-  int weak_frames_ = 0;  // since the first of the references that had a weak map
+  int frames_ = 0;  // since the first of the references that had one
 };
 
 }  // namespace pliant

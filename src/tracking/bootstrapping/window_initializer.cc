@@ -121,7 +121,7 @@ class WindowInitializer final : public Initializer {
     const bool contradicts = outcome->measured.focal_length_factor != 1.0;
     if (outcome->deforming || outcome->allows_deformation || !(contradicts || input.was_ambiguous)) return Status::Ok();
     const std::string why = contradicts ? "a rigid motion does not explain the images with this focal length"
-                                        : "camera and scene could not be told apart before this reference";
+                                        : "camera and scene could not be told apart by another reference";
     if (outcome->provisional)
       return {ErrorCode::kDegenerate,
               "the depths are not as certain as demanded, and " + why + "; " +

@@ -64,7 +64,7 @@ struct InitInput {
   std::vector<double> reference_depths = {};
   std::optional<PhotometricCalibration> photometric = std::nullopt;  // where it is known
   bool camera_may_stand_still = false;  // as an answer since the reference said (InitOutcome)
-  bool was_ambiguous = false;           // when an earlier reference, since the last map, was given up (InitOutcome)
+  bool was_ambiguous = false;           // when another reference, since the last map, was given up (InitOutcome)
   CameraOrigin camera_origin = CameraOrigin::kGiven;
 };
 
