@@ -247,10 +247,9 @@ void Bootstrapper::TakeAnswer(Answer answer, Reference* reference, BootstrapStep
     case InitDecision::kNewReference:
       TellAmbiguity(outcome, *reference, step);
       if (reference->frames.size() >= given_up_.frames) given_up_ = {reference->frames.size(), outcome.reason};
-      if (outcome.ambiguous) {
-        was_ambiguous_ = true;
+      was_ambiguous_ |= outcome.ambiguous;
+      if (outcome.ambiguous || outcome.camera_may_stand_still)
         DoubtRigidity(reference == &next_ ? &reference_.provisional : &next_.provisional);
-      }
       GiveUpReference(reference, step);
       break;
   }
@@ -267,7 +266,9 @@ void Bootstrapper::TellAmbiguity(const InitOutcome& outcome, const Reference& re
 void Bootstrapper::TakeAlternative(const Answer& answer, Reference* reference) {
   // What is less certain, or takes more for granted, is no answer then.
   if (answer.outcome.ambiguous) {
-    Doubt(answer.outcome.camera_may_stand_still, &reference->provisional);
+    // Of the other reference too: they have frames in common.
+    for (Reference* doubted : {&reference_, &next_})
+      Doubt(answer.outcome.camera_may_stand_still, &doubted->provisional);
     weak_.Doubt();
   }
   if (answer.outcome.ambiguous || answer.outcome.camera_may_stand_still) ForgetAlternative();

@@ -31,8 +31,8 @@ void PutAside(MadeMap made, std::optional<MadeMap>* best);
 // Camera and scene cannot be told apart by a reference: what is less certain is no answer then, nor is anything of it
 // if the camera may stand still.
 void Doubt(bool camera_may_stand_still, std::optional<MadeMap>* of_reference);
-// (W20) Camera and scene could not be told apart by another reference: a map of a rigid window, whose sigmas know
-// nothing of a deformation, is no answer then.
+// (W20) A camera that stands still explains the frames of another reference as well, which overlap with this one's: a
+// map of a rigid window, whose sigmas know nothing of a deformation, is no answer then.
 void DoubtRigidity(std::optional<MadeMap>* of_reference);
 
 // The best weak map. In what follows `of_reference` is the map that a reference put aside, if there is one.
