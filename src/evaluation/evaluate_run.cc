@@ -63,6 +63,10 @@ Status AddDense(const EvaluationInput& run, const RunReferences& references, con
   const auto surface = ReadSurfaceFolder(references.surface_path);
   if (!surface.ok()) return surface.status();
   auto dense = ComputeDenseError(*surface, run, *references.truth->sequence, options.points.scale);
+  if (!dense.ok() && dense.status().code() == ErrorCode::kInsufficient) {  // as of other parts without truth
+    evaluation->notes.push_back(dense.status().message());
+    return Status::Ok();
+  }
   if (!dense.ok()) return dense.status();
   evaluation->dense = *std::move(dense);
   if (const Status status = CheckSurfaceOfRun(*surface, run.name); !status.ok())

@@ -92,6 +92,9 @@ Json ToJson(const DepthFigures& f) {
 }
 
 Json ToJson(const DenseError& e) {
+  // Null: there was nothing to measure.
+  const auto where = [](bool measured, const DepthFigures& figures) { return measured ? ToJson(figures) : Json(); };
+  const bool has_mesh = e.mesh_vertices > 0.0;
   Json json = {{"scale", EnumName(e.scale)},
                {"frames_compared", e.frames},
                {"frames_without_depth", e.frames_without_depth},
@@ -103,11 +106,11 @@ Json ToJson(const DenseError& e) {
                {"within_2_sigma", e.within_2_sigma},
                {"estimate", ToJson(e.estimate)},
                {"certain_half", ToJson(e.certain_half)},
-               {"interpolation", ToJson(e.interpolation)},
-               {"filled", ToJson(e.filled)},
+               {"interpolation", where(e.interpolation.rmse_mm > 0.0, e.interpolation)},
+               {"filled", where(e.filled_share > 0.0, e.filled)},
                {"filled_share", e.filled_share},
-               {"mesh", ToJson(e.mesh)},
-               {"mesh_alone", ToJson(e.mesh_alone)},
+               {"mesh", where(has_mesh && e.mesh_alone_share < 1.0, e.mesh)},
+               {"mesh_alone", where(has_mesh && e.mesh_alone_share > 0.0, e.mesh_alone)},
                {"mesh_vertices", e.mesh_vertices},
                {"mesh_alone_share", e.mesh_alone_share},
                {"null", ToJson(e.null)}};

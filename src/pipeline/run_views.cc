@@ -23,9 +23,17 @@ constexpr double kMaxPairSpread = 0.05;  // relative, of the depths of a pair by
 Result<std::vector<PosedFrame>> ReadPosedFrames(const std::string& path, const Run& run) {
   const auto frames_idx = FramesWithPose(path, run);
   if (!frames_idx.ok()) return frames_idx.status();
+  std::set<int> provisional;
+  for (const RunFrame& frame : run.frames)
+    if (frame.state == TrackingState::kProvisional) provisional.insert(frame.frame_idx);
   std::vector<PosedFrame> frames;
   for (const RunPose& pose : run.poses)
-    frames.push_back({*pose.frame_idx, pose.submap, pose.timestamp_s, pose.world_from_cam.Inverse(), {}});
+    frames.push_back({*pose.frame_idx,
+                      pose.submap,
+                      pose.timestamp_s,
+                      provisional.contains(*pose.frame_idx),
+                      pose.world_from_cam.Inverse(),
+                      {}});
   const Status status = ForEachFrame(path, *frames_idx, [&](std::size_t k, const auto& observations) {
     frames[k].observations = observations;
     std::ranges::sort(frames[k].observations, {}, &PointObservation::id);

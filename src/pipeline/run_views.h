@@ -28,6 +28,7 @@ struct PosedFrame {
   int frame_idx = 0;
   int submap = 0;
   double timestamp_s = 0;
+  bool provisional = false;
   Rigid3 cam_from_world;
   std::vector<PointObservation> observations;  // sorted by id
 };

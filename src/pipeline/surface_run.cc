@@ -26,7 +26,9 @@
 #include "pipeline/surface_writer.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
+#include "pliant/datasets/native_layout.h"
 #include "pliant/datasets/run_sequence.h"
+#include "pliant/datasets/surface_folder.h"
 #include "pliant/image/depth_lookup.h"
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
@@ -115,6 +117,13 @@ double LargestDepth(const std::vector<PosedFrame>& frames) {
   return std::min(2.0 * largest, 4.0 * far);
 }
 
+// The images of its neighbors do not agree with it, or are from so near that they tell no depth.
+std::string NothingKnown(double max_sigma) {
+  return "no pixel's depth is known to " + Percent(max_sigma) +
+         ", as Surface.max_sigma demands: the images do not agree, or are taken from so near each other that they tell "
+         "no depth; compare others (Surface.max_frames_apart, Surface.neighbors)";
+}
+
 class SurfaceMaker {
  public:
   // `window_px`: of the normals.
@@ -132,6 +141,7 @@ class SurfaceMaker {
               SurfaceSummary* summary) {
     const int total = static_cast<int>(plan.references.size());
     const std::set<std::size_t> is_reference(plan.references.begin(), plan.references.end());
+    const SurfaceFileNames names(known.names);
     if (callback_) callback_(SurfaceStage::kDepth, 0, total, 0.0);
     for (std::size_t k = 0; k < plan.references.size(); ++k) {
       if (request_.stop != nullptr && *request_.stop) {
@@ -147,7 +157,8 @@ class SurfaceMaker {
         return status;
       SurfaceFrame frame;
       frame.frame_idx = frames[reference].frame_idx;
-      if (const auto name = known.names.find(frame.frame_idx); name != known.names.end()) frame.name = name->second;
+      frame.provisional = frames[reference].provisional;
+      frame.name = names.Of(frame.frame_idx);
       for (const std::size_t n : plan.neighbors[k]) frame.neighbors.push_back(frames[n].frame_idx);
       if (Status status = MakeFrame(reference, plan.neighbors[k], *known.camera, *images, &frame); !status.ok())
         return status;
@@ -183,6 +194,7 @@ class SurfaceMaker {
       return Status::Ok();
     }
     Describe(*dense, images.At(reference).valid, frame);
+    if (frame->known_share == 0.0) frame->note = NothingKnown(options_.depth.max_sigma);
     SurfaceMaps maps{*std::move(dense), {}, {}};
     if (options_.fill > 0) {
       maps.filled = FillHoles(camera, images.TissueIn(reference), options_.fill, &maps.dense);
@@ -203,9 +215,11 @@ class SurfaceMaker {
 
 // Why the frames have no depth: what is said of the first one that was tracked.
 std::string ReasonOf(const std::vector<SurfaceFrame>& frames) {
-  for (const SurfaceFrame& frame : frames)
-    if (!frame.note.empty() && frame.note != kNotTracked && frame.note != kNotInRun) return frame.note;
-  return "the images do not agree anywhere";
+  const auto has_reason = [](const SurfaceFrame& frame) {
+    return !frame.note.empty() && frame.note != kNotTracked && frame.note != kNotInRun;
+  };
+  const auto found = std::ranges::find_if(frames, has_reason);
+  return found != frames.end() ? found->note : "none was compared with another one";
 }
 
 // The chosen frames that have no pose, with a note of why. Another program's run does not say which frames it read.
@@ -219,7 +233,8 @@ std::vector<SurfaceFrame> FramesWithoutPose(const SurfaceRequest& request, const
   for (const int frame_idx : std::set<int>(request.frames.begin(), request.frames.end())) {
     if (tracked.contains(frame_idx)) continue;
     const bool was_read = read.empty() || read.contains(frame_idx);
-    missing.push_back({.frame_idx = frame_idx, .note = was_read ? kNotTracked : kNotInRun});
+    missing.push_back(
+        {.frame_idx = frame_idx, .name = native::FrameFileName(frame_idx), .note = was_read ? kNotTracked : kNotInRun});
   }
   return missing;
 }
@@ -253,6 +268,39 @@ std::vector<std::string> WarningsOf(const std::vector<SurfaceFrame>& missing, co
                                                " not tracked" + left_out);
   }
   return warnings;
+}
+
+// A warning where some are of a provisional map; else empty.
+std::string ProvisionalWarning(const std::vector<SurfaceFrame>& frames) {
+  const auto provisional = std::ranges::count_if(frames, &SurfaceFrame::provisional);
+  if (provisional == 0) return {};
+  return std::to_string(provisional) + " of " + std::to_string(frames.size()) +
+         " frames are of a provisional map, whose depths are less certain than demanded: so is what the surface has "
+         "from it (poses, and the motion through which images are compared)";
+}
+
+bool HasMesh(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::directory_iterator meshes(std::filesystem::path(path) / surface::kMeshFolder, error);
+  return !error && meshes != std::filesystem::directory_iterator();
+}
+
+// Where the points of chosen frames rest where they were seen first; else empty.
+std::string StillWarning(const std::vector<PosedFrame>& frames, const std::vector<std::size_t>& chosen,
+                         const RunMap& run) {
+  constexpr double kStill = 1e-4;  // by the distance from the camera
+  const auto is_still = [&](std::size_t k) {
+    const PosedFrame& frame = frames[k];
+    return std::ranges::none_of(frame.observations, [&](const PointObservation& seen) {
+      const auto point = run.points.find(seen.id);
+      const double distance = (frame.cam_from_world * seen.position).norm();
+      return point != run.points.end() && (seen.position - point->second.position).norm() > kStill * distance;
+    });
+  };
+  const auto still = std::ranges::count_if(chosen, is_still);
+  if (still == 0) return {};
+  return "the run takes the scene as rigid in " + std::to_string(still) + " of " + std::to_string(chosen.size()) +
+         " frames: displacement and strain of the mesh are 0 there, whatever the tissue did";
 }
 
 Status NoFrameChosen(const SurfaceRequest& request, const Run& run, const std::vector<SurfaceFrame>& missing) {
@@ -322,6 +370,10 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
       SurfaceMaker(request, options, callback, *estimator, ComparedWindowPx(tracked, options.depth), &*writer)
           .Make(*frames, plan, *known, &images, &summary);
   if (images.AreOfOtherImages()) summary.warnings.push_back(kOtherImages);
+  for (const std::string& warning :
+       {ProvisionalWarning(summary.frames),
+        options.mesh_columns > 0 ? StillWarning(*frames, plan.references, *known) : std::string()})
+    if (!warning.empty()) summary.warnings.push_back(warning);
   std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
   // Until the meshes are there too, the folder says that it was interrupted.
   const bool stopped = summary.stopped || !made.ok();
@@ -345,6 +397,10 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
     const auto finished_meshes = MakeMeshes(meshes, options, ThreadsOf(options), go_on);
     if (!finished_meshes.ok()) return finished_meshes.status();
     summary.stopped = !*finished_meshes;
+    if (!summary.stopped && !HasMesh(request.output_path))
+      summary.warnings.push_back(
+          "there is no mesh: its vertices are too far apart, or too few pixels have a depth, for "
+          "a triangle; raise Surface.mesh_columns");
   }
   if (Status status = writer->Finish(request, options, summary); !status.ok()) return status;
   return summary;

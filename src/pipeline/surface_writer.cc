@@ -68,13 +68,21 @@ Status RemoveEarlierSurface(const fs::path& path) {
   return error ? Unwritable(path) : MeshWriter::RemoveEarlier(path);
 }
 
-// The image's name with the ending .png.
-std::string FileNameOf(const SurfaceFrame& frame) {
-  return frame.name.empty() ? native::FrameFileName(frame.frame_idx)
-                            : fs::path(frame.name).filename().replace_extension(".png").string();
-}
+std::string StemOf(const std::string& image_name) { return fs::path(image_name).stem().string(); }
 
 }  // namespace
+
+SurfaceFileNames::SurfaceFileNames(const std::map<int, std::string>& images) : images_(images) {
+  for (const auto& [frame_idx, name] : images) ++images_of_stem_[StemOf(name)];
+}
+
+std::string SurfaceFileNames::Of(int frame_idx) const {
+  const std::string number = native::FrameFileName(frame_idx);
+  const auto image = images_.find(frame_idx);
+  if (image == images_.end()) return number;
+  const std::string stem = StemOf(image->second);
+  return images_of_stem_.at(stem) == 1 ? stem + ".png" : stem + "_" + number;
+}
 
 Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const SurfaceSource& source,
                                             const SurfaceRunOptions& options) {
@@ -104,7 +112,7 @@ Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Surfa
 }
 
 Status SurfaceWriter::Write(const SurfaceFrame& frame, const SurfaceMaps& maps) {
-  const std::string name = FileNameOf(frame);
+  const std::string name = frame.name;
   if (!maps.filled.empty())
     if (Status status = WritePng(path_ / surface::kFilledFolder / name, maps.filled); !status.ok()) return status;
   if (exr_)
@@ -147,7 +155,8 @@ Status SurfaceWriter::Finish(const SurfaceRequest& request, const SurfaceRunOpti
                {"frames", Json::array()}};
   for (const SurfaceFrame& frame : summary.frames)
     json["frames"].push_back({{"frame", frame.frame_idx},
-                              {"name", FileNameOf(frame)},
+                              {"name", frame.name},
+                              {"provisional", frame.provisional},
                               {"neighbors", frame.neighbors},
                               {"pair", frame.has_pair},
                               {"known_share", frame.known_share},

@@ -97,6 +97,8 @@ TEST_F(DenseErrorTest, TheTableNamesItsScale) {
     EXPECT_THAT(EvaluationTable(evaluation), testing::HasSubstr("dense depth (scale " + name + "; 2 frames"));
     const auto json = nlohmann::json::parse(EvaluationJson(evaluation));
     EXPECT_EQ(json.at("dense").at("scale"), name);
+    for (const char* not_there : {"filled", "mesh", "mesh_alone"})
+      EXPECT_TRUE(json.at("dense").at(not_there).is_null()) << not_there;
   }
 }
 

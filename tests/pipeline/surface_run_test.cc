@@ -3,6 +3,7 @@
 
 #include "pliant/pipeline/surface_run.h"
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/surface_neighbors.h"
+#include "pipeline/surface_writer.h"
 #include "pliant/datasets/surface_folder.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"
@@ -115,6 +117,15 @@ TEST_F(SurfaceRunTest, AFrameWithFewPointsHasNoDepthAndSaysWhy) {
   EXPECT_THAT(folder_.Read("surface/surface.json"), HasSubstr("needs 12 points"));
 }
 
+TEST(SurfaceFileNames, AreTheImagesUnlessTwoWouldBeCalledTheSame) {
+  const std::map<int, std::string> images = {{3, "a.jpg"}, {4, "left/1.png"}, {5, "right/1.png"}, {6, "1.tif"}};
+  const SurfaceFileNames names(images);
+  EXPECT_EQ(names.Of(3), "a.png");
+  EXPECT_EQ(names.Of(4), "1_000004.png");
+  EXPECT_EQ(names.Of(5), "1_000005.png");
+  EXPECT_EQ(names.Of(7), "000007.png");
+}
+
 TEST_F(SurfaceRunTest, SaysWhetherAMapUnitIsAMillimeter) {
   const std::string images = WriteImages(19);
   for (const auto& [metric, text] : {std::pair(true, "\"metric\": true"), std::pair(false, "\"metric\": false")}) {
@@ -156,7 +167,7 @@ TEST_F(SurfaceRunTest, LeavesAFolderOfOtherThingsAlone) {
 std::vector<PosedFrame> Frames(int count, int points_lost_a_frame) {
   std::vector<PosedFrame> frames;
   for (int k = 0; k < count; ++k) {
-    PosedFrame frame{k, 0, 0.0, {Eigen::Quaterniond::Identity(), Eigen::Vector3d(-k, 0, 0)}, {}};
+    PosedFrame frame{k, 0, 0.0, false, {Eigen::Quaterniond::Identity(), Eigen::Vector3d(-k, 0, 0)}, {}};
     for (int i = 0; i < 40; ++i)
       frame.observations.push_back({PointId{k * points_lost_a_frame + i}, {}, Eigen::Vector3d(0.1 * i, 0, 50)});
     frames.push_back(frame);

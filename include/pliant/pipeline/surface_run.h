@@ -53,7 +53,8 @@ struct SurfaceRequest {
 
 struct SurfaceFrame {
   int frame_idx = 0;
-  std::string name = {};
+  std::string name = {};            // of its files, with the ending .png
+  bool provisional = false;         // as its map was
   std::vector<int> neighbors = {};  // frames
   bool has_pair = false;            // it was compared with its right image, not with neighbors
   double known_share = 0;           // of the image's valid pixels, that have a depth
