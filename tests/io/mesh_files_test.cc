@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -75,7 +76,7 @@ class MeshFilesTest : public testing::Test {
   std::vector<MeshKey> keys_ = {{4, 2.0, mesh_.vertices},
                                 {9, 3.0, {{-5, -5, 21}, {5, -5, 21}, {-5, 5, 21}, {5, 5, 21}}}};
   std::vector<CameraKey> path_ = {{2.0, {}}, {3.0, {RotationExp({0, 0.5, 0}), Eigen::Vector3d(1, 2, 3)}}};
-  Camera camera_ = Camera::Create(CameraModelId::kPinhole, 640, 480, std::array{400.0, 400.0, 320.0, 240.0}).value();
+  Camera camera_ = Camera::Create(CameraModelId::kPinhole, 640, 480, std::array{400.0, 400.0, 319.5, 239.5}).value();
 };
 
 TEST_F(MeshFilesTest, GltfIsInMetersAndYIsUp) {
@@ -116,6 +117,35 @@ TEST_F(MeshFilesTest, GltfsCameraLooksAtWhatOursDoes) {
   const Eigen::Vector3d ours = path_[1].world_from_cam * Eigen::Vector3d(0, 0, 10);
   const Eigen::Vector3f theirs = center + rotation * Eigen::Vector3f(0, 0, -0.01F);
   EXPECT_TRUE(theirs.isApprox(0.001F * Eigen::Vector3d(ours.x(), -ours.y(), -ours.z()).cast<float>(), 1e-5F));
+}
+
+TEST_F(MeshFilesTest, GltfsCameraShowsTheWholeImageOfAnyLens) {
+  const auto view_of = [&](CameraModelId model, const std::vector<double>& params) {
+    const Camera camera = Camera::Create(model, 640, 480, params).value();
+    const tinygltf::PerspectiveCamera view =
+        WriteAndRead({mesh_, texture_, keys_, path_, camera, 3}).cameras[0].perspective;
+    const double half_height = std::tan(0.5 * view.yfov);
+    return Eigen::Vector2d(view.aspectRatio * half_height, half_height);
+  };
+  // To the border that is farther from the principal point.
+  const Eigen::Vector2d aside = view_of(CameraModelId::kPinhole, {400, 400, 349.5, 199.5});
+  EXPECT_TRUE(aside.isApprox(Eigen::Vector2d(350.0 / 400.0, 280.0 / 400.0), 1e-9)) << aside.transpose();
+  // Equidistant: the corners are 400 px from the middle, of which 320 are to the side.
+  const Eigen::Vector2d wide = view_of(CameraModelId::kOpenCvFisheye, {400, 400, 319.5, 239.5, 0, 0, 0, 0});
+  EXPECT_TRUE(wide.isApprox(std::tan(1.0) * Eigen::Vector2d(0.8, 0.6), 1e-6)) << wide.transpose();
+  // The corners are behind the camera.
+  const Eigen::Vector2d widest = view_of(CameraModelId::kOpenCvFisheye, {200, 200, 319.5, 239.5, 0, 0, 0, 0});
+  EXPECT_TRUE(widest.isApproxToConstant(std::tan(75.0 * std::numbers::pi / 180.0), 1e-9)) << widest.transpose();
+}
+
+TEST_F(MeshFilesTest, GltfsCameraHasTheIntrinsics) {
+  const tinygltf::Value intrinsics = WriteAndRead({mesh_, texture_, keys_, path_, camera_, 3}).cameras[0].extras;
+  ASSERT_TRUE(intrinsics.IsObject());
+  EXPECT_EQ(intrinsics.Get("model").Get<std::string>(), "PINHOLE");
+  EXPECT_EQ(intrinsics.Get("width").GetNumberAsInt(), 640);
+  EXPECT_EQ(intrinsics.Get("height").GetNumberAsInt(), 480);
+  ASSERT_EQ(intrinsics.Get("params").ArrayLen(), 4U);
+  EXPECT_EQ(intrinsics.Get("params").Get(2).GetNumberAsDouble(), 319.5);
 }
 
 TEST_F(MeshFilesTest, GltfHasTheTextureInside) {

@@ -36,8 +36,10 @@ struct MeshAnimation {
   std::string_view texture_jpeg;    // a JPEG file's bytes; empty: the vertices' colors
   std::span<const MeshKey> keys;    // times increase; between two of them positions change linearly
   std::span<const CameraKey> path;  // times increase
-  const Camera& camera;             // its focal length and size: glTF knows no distortion
-  int submap = 0;                   // of the run, whose world this is
+  // glTF knows neither distortion nor a principal point: the file's camera has the smallest view around the optical
+  // axis that shows the whole image, of at most 150 degrees, and the intrinsics in its extras.
+  const Camera& camera;
+  int submap = 0;  // of the run, whose world this is
 };
 
 // Keys are morph targets, of which one at a time has weight 1; all weights 0: the undeformed mesh. A mesh without
