@@ -37,6 +37,8 @@ constexpr const char* kFrames = "frames";         // extras: of the keys
 constexpr const char* kSigmaUnit = "sigma_unit";  // extras; earlier versions, which had map units, lack it
 constexpr const char* kMeters = "m";
 constexpr const char* kSubmap = "submap";
+constexpr const char* kTimes = "times_s";  // extras: of the keys; earlier versions have those of the animation alone
+constexpr const char* kGaps = "gaps";      // extras; earlier versions lack them
 
 // From x right, y down, z forward to glTF's x right, y up, z backward.
 Eigen::Vector3f InGltf(const Eigen::Vector3f& v) { return {v.x(), -v.y(), -v.z()}; }
@@ -187,6 +189,45 @@ int AddMaterial(std::string_view texture_jpeg, ModelBuilder* builder) {
   return 0;
 }
 
+// Of the recording, where the animation begins.
+double StartOf(const MeshAnimation& animation) {
+  double start_s = 0.0;
+  if (!animation.path.empty()) start_s = animation.path.front().time_s;
+  if (!animation.keys.empty()) start_s = std::min(start_s, animation.keys.front().time_s);
+  return start_s;
+}
+
+tinygltf::Value GapsOf(const MeshAnimation& animation) {
+  const double start_s = StartOf(animation);
+  tinygltf::Value::Array gaps;
+  for (const MotionGap& gap : animation.gaps) {
+    tinygltf::Value::Object entry;
+    entry.emplace("last_frame", tinygltf::Value(gap.last_frame_idx));
+    entry.emplace("next_frame", tinygltf::Value(gap.next_frame_idx));
+    entry.emplace("last_time_s", tinygltf::Value(gap.last_time_s - start_s));
+    entry.emplace("held_until_s", tinygltf::Value(gap.held_until_s - start_s));
+    entry.emplace("next_time_s", tinygltf::Value(gap.next_time_s - start_s));
+    gaps.emplace_back(std::move(entry));
+  }
+  return tinygltf::Value(std::move(gaps));
+}
+
+tinygltf::Value ExtrasOf(const MeshAnimation& animation) {
+  tinygltf::Value::Array frames;
+  tinygltf::Value::Array times;
+  for (const MeshKey& key : animation.keys) {
+    frames.emplace_back(key.frame_idx);
+    times.emplace_back(key.time_s - StartOf(animation));
+  }
+  tinygltf::Value::Object extras;
+  extras.emplace(kFrames, tinygltf::Value(std::move(frames)));
+  extras.emplace(kTimes, tinygltf::Value(std::move(times)));
+  if (!animation.gaps.empty()) extras.emplace(kGaps, GapsOf(animation));
+  extras.emplace(kSubmap, tinygltf::Value(animation.submap));
+  extras.emplace(kSigmaUnit, tinygltf::Value(std::string(kMeters)));
+  return tinygltf::Value(std::move(extras));
+}
+
 void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
   const Mesh& mesh = animation.mesh;
   const Corners corners = SplitAtSeams(mesh);
@@ -221,13 +262,7 @@ void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
   tinygltf::Mesh entry;
   entry.name = "surface";
   entry.primitives.push_back(primitive);
-  tinygltf::Value::Array frames;
-  for (const MeshKey& key : animation.keys) frames.emplace_back(key.frame_idx);
-  tinygltf::Value::Object extras;
-  extras.emplace(kFrames, tinygltf::Value(std::move(frames)));
-  extras.emplace(kSubmap, tinygltf::Value(animation.submap));
-  extras.emplace(kSigmaUnit, tinygltf::Value(std::string(kMeters)));
-  entry.extras = tinygltf::Value(std::move(extras));
+  entry.extras = ExtrasOf(animation);
   entry.weights.assign(animation.keys.size(), 0.0);
   if (!entry.weights.empty()) entry.weights[0] = 1.0;
   builder->model().meshes.push_back(entry);
@@ -324,10 +359,36 @@ void AddChannel(int node, const char* what, int times, int values, tinygltf::Ani
   animation->channels.push_back(channel);
 }
 
+// A key at a time of the animation.
+struct KeyAtTime {
+  float time_s = 0;
+  std::size_t key = 0;
+};
+
+// Each key at its time. Across a gap the one before it is held, and the one behind it is there at once.
 template <class Keys>
-int AddTimes(const Keys& keys, double start_s, ModelBuilder* builder) {
+std::vector<KeyAtTime> KeysInTime(const Keys& keys, const MeshAnimation& animation) {
+  const auto at = [start_s = StartOf(animation)](double time_s) { return static_cast<float>(time_s - start_s); };
+  std::vector<KeyAtTime> result;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    result.push_back({at(keys[k].time_s), k});
+    if (k + 1 == keys.size()) break;
+    const auto gap = std::ranges::find_if(animation.gaps, [&](const MotionGap& candidate) {
+      return keys[k].time_s <= candidate.last_time_s && candidate.next_time_s <= keys[k + 1].time_s;
+    });
+    if (gap == animation.gaps.end()) continue;
+    // Times must increase, also when rounded to a float.
+    const float held_until = at(gap->held_until_s);
+    const float next = at(gap->next_time_s);
+    if (result.back().time_s < held_until && held_until < next) result.push_back({held_until, k});
+    if (result.back().time_s < next && next < at(keys[k + 1].time_s)) result.push_back({next, k + 1});
+  }
+  return result;
+}
+
+int AddTimes(const std::vector<KeyAtTime>& keys, ModelBuilder* builder) {
   std::vector<float> times;
-  for (const auto& key : keys) times.push_back(static_cast<float>(key.time_s - start_s));
+  for (const KeyAtTime& key : keys) times.push_back(key.time_s);
   return builder->AddFloats(times, TINYGLTF_TYPE_SCALAR, true, 0);
 }
 
@@ -338,35 +399,39 @@ Eigen::Quaternionf RotationInGltf(const Rigid3& world_from_cam) {
   return Eigen::Quaterniond(rotation).normalized().cast<float>();
 }
 
+void AddMeshMotion(const MeshAnimation& input, ModelBuilder* builder, tinygltf::Animation* animation) {
+  const std::vector<KeyAtTime> keys = KeysInTime(input.keys, input);
+  const std::size_t count = input.keys.size();
+  std::vector<float> weights(keys.size() * count, 0.0F);
+  for (std::size_t row = 0; row < keys.size(); ++row) weights[row * count + keys[row].key] = 1.0F;
+  AddChannel(kSurfaceNode, "weights", AddTimes(keys, builder),
+             builder->AddFloats(weights, TINYGLTF_TYPE_SCALAR, false, 0), animation);
+}
+
+void AddCameraMotion(const MeshAnimation& input, ModelBuilder* builder, tinygltf::Animation* animation) {
+  const std::vector<KeyAtTime> keys = KeysInTime(input.path, input);
+  std::vector<float> translations;
+  std::vector<float> rotations;
+  Eigen::Quaternionf last = Eigen::Quaternionf::Identity();
+  for (const KeyAtTime& key : keys) {
+    const Rigid3& world_from_cam = input.path[key.key].world_from_cam;
+    Append(InGltf(kMetersPerUnit * world_from_cam.translation.cast<float>()), &translations);
+    Eigen::Quaternionf rotation = RotationInGltf(world_from_cam);
+    if (rotation.dot(last) < 0.0F) rotation.coeffs() *= -1.0F;  // interpolated the short way
+    rotations.insert(rotations.end(), rotation.coeffs().data(), rotation.coeffs().data() + 4);
+    last = rotation;
+  }
+  const int times = AddTimes(keys, builder);
+  AddChannel(kCameraNode, "translation", times, builder->AddFloats(translations, TINYGLTF_TYPE_VEC3, false, 0),
+             animation);
+  AddChannel(kCameraNode, "rotation", times, builder->AddFloats(rotations, TINYGLTF_TYPE_VEC4, false, 0), animation);
+}
+
 void AddAnimation(const MeshAnimation& input, ModelBuilder* builder) {
   tinygltf::Animation animation;
   animation.name = "recording";
-  double start_s = 0.0;
-  if (!input.path.empty()) start_s = input.path.front().time_s;
-  if (!input.keys.empty()) start_s = std::min(start_s, input.keys.front().time_s);
-  if (!input.keys.empty()) {
-    const std::size_t count = input.keys.size();
-    std::vector<float> weights(count * count, 0.0F);
-    for (std::size_t k = 0; k < count; ++k) weights[k * count + k] = 1.0F;
-    AddChannel(kSurfaceNode, "weights", AddTimes(input.keys, start_s, builder),
-               builder->AddFloats(weights, TINYGLTF_TYPE_SCALAR, false, 0), &animation);
-  }
-  if (!input.path.empty()) {
-    std::vector<float> translations;
-    std::vector<float> rotations;
-    Eigen::Quaternionf last = Eigen::Quaternionf::Identity();
-    for (const CameraKey& key : input.path) {
-      Append(InGltf(kMetersPerUnit * key.world_from_cam.translation.cast<float>()), &translations);
-      Eigen::Quaternionf rotation = RotationInGltf(key.world_from_cam);
-      if (rotation.dot(last) < 0.0F) rotation.coeffs() *= -1.0F;  // interpolated the short way
-      rotations.insert(rotations.end(), rotation.coeffs().data(), rotation.coeffs().data() + 4);
-      last = rotation;
-    }
-    const int times = AddTimes(input.path, start_s, builder);
-    AddChannel(kCameraNode, "translation", times, builder->AddFloats(translations, TINYGLTF_TYPE_VEC3, false, 0),
-               &animation);
-    AddChannel(kCameraNode, "rotation", times, builder->AddFloats(rotations, TINYGLTF_TYPE_VEC4, false, 0), &animation);
-  }
+  if (!input.keys.empty()) AddMeshMotion(input, builder, &animation);
+  if (!input.path.empty()) AddCameraMotion(input, builder, &animation);
   if (!animation.channels.empty()) builder->model().animations.push_back(animation);
 }
 
@@ -398,6 +463,33 @@ std::vector<Eigen::Vector3f> VectorsOf(const std::vector<float>& values, float s
   for (std::size_t i = 0; i + 2 < values.size(); i += 3)
     vectors.emplace_back(scale * InGltf({values[i], values[i + 1], values[i + 2]}));
   return vectors;
+}
+
+std::vector<MotionGap> GapsIn(const tinygltf::Value& extras) {
+  std::vector<MotionGap> gaps;
+  if (!extras.Has(kGaps) || !extras.Get(kGaps).IsArray()) return gaps;
+  for (std::size_t i = 0; i < extras.Get(kGaps).ArrayLen(); ++i) {
+    const tinygltf::Value& entry = extras.Get(kGaps).Get(static_cast<int>(i));
+    if (!entry.IsObject()) continue;
+    gaps.push_back({entry.Get("last_frame").GetNumberAsInt(), entry.Get("next_frame").GetNumberAsInt(),
+                    entry.Get("last_time_s").GetNumberAsDouble(), entry.Get("held_until_s").GetNumberAsDouble(),
+                    entry.Get("next_time_s").GetNumberAsDouble()});
+  }
+  return gaps;
+}
+
+// Of the keys. Throws as MeshIn.
+std::vector<double> TimesIn(const tinygltf::Model& model) {
+  std::vector<double> times;
+  const tinygltf::Value& extras = model.meshes.at(0).extras;
+  if (extras.Has(kTimes) && extras.Get(kTimes).IsArray()) {
+    for (std::size_t i = 0; i < extras.Get(kTimes).ArrayLen(); ++i)
+      times.push_back(extras.Get(kTimes).Get(static_cast<int>(i)).GetNumberAsDouble());
+  } else if (!model.meshes.at(0).primitives.at(0).targets.empty()) {
+    const auto floats = FloatsAt(model, model.animations.at(0).samplers.at(0).input).value();
+    times.assign(floats.begin(), floats.end());
+  }
+  return times;
 }
 
 // Throws what tinygltf's and the standard library's accessors throw; nothing: not as we write it.
@@ -438,8 +530,8 @@ std::optional<GltfMesh> MeshIn(const tinygltf::Model& model) {
     for (float& sigma : mesh.sigmas) sigma /= kMetersPerUnit;
   const tinygltf::Value& frames = entry.extras.Get(kFrames);
   if (!frames.IsArray() || frames.ArrayLen() != primitive.targets.size()) return std::nullopt;
-  std::vector<float> times;
-  if (!primitive.targets.empty()) times = FloatsAt(model, model.animations.at(0).samplers.at(0).input).value();
+  result.gaps = GapsIn(entry.extras);
+  const std::vector<double> times = TimesIn(model);
   for (std::size_t k = 0; k < primitive.targets.size(); ++k) {
     const auto moved = FloatsAt(model, primitive.targets[k].at("POSITION"));
     if (!moved || moved->size() != positions->size()) return std::nullopt;

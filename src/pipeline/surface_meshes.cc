@@ -112,7 +112,7 @@ class MeshMaker {
     if (Status status = WriteFrames(writer); !status.ok() || stopped_ || !options_.gltf) return status;
     return WriteGlb(
         writer->FileName("surface", ".glb").string(),
-        {mesh_, texture_jpeg_, keys_, CameraPath(), source_.folder.camera, PosedOf(frames_.front()).submap});
+        {mesh_, texture_jpeg_, keys_, CameraPath(), source_.folder.camera, PosedOf(frames_.front()).submap, gaps_});
   }
 
   bool stopped() const { return stopped_; }
@@ -172,7 +172,6 @@ class MeshMaker {
   }
 
   Status WriteFrames(MeshWriter* writer) {
-    const std::size_t keys = std::min<std::size_t>(frames_.size(), static_cast<std::size_t>(options_.animation_keys));
     for (std::size_t k = 0; k < frames_.size() && !stopped_; ++k) {
       const auto dense = ReadDense(source_.folder, frames_[k].file);
       if (!dense.ok()) return dense.status();
@@ -183,12 +182,35 @@ class MeshMaker {
       if (Status status = writer->WriteFrame(std::filesystem::path(frames_[k].file.file_name).stem(), deformed);
           !status.ok())
         return status;
-      // The keys are as even in time as the frames are.
-      if (keys_.size() < keys && k * (keys - 1) >= keys_.size() * (frames_.size() - 1))
-        keys_.push_back({frame.frame_idx, frame.timestamp_s, deformed.Vertices()});
+      KeepKey(k, {frame.frame_idx, frame.timestamp_s, deformed.Vertices()});
       stopped_ = !go_on_() && k + 1 < frames_.size();
     }
     return writer->Finish();
+  }
+
+  // Of frames as even in time as the `k`-th is among all, and of both ends of gaps, as far as these are not too many.
+  void KeepKey(std::size_t k, MeshKey key) {
+    const std::size_t most = std::min<std::size_t>(frames_.size(), static_cast<std::size_t>(options_.animation_keys));
+    const bool is_even = even_keys_ < most && k * (most - 1) >= even_keys_ * (frames_.size() - 1);
+    if (is_even) ++even_keys_;
+    const auto gap = last_ ? GapBetween(*last_, key) : std::nullopt;
+    if (gap) gaps_.push_back(*gap);
+    const bool is_end = gap && keys_.size() + 2 <= 2 * most;
+    if (is_end && keys_.back().frame_idx != last_->frame_idx) keys_.push_back(*last_);
+    if (is_even || is_end) keys_.push_back(key);
+    last_ = std::move(key);
+  }
+
+  // Of two frames of which no one in between has a mesh: whether one was to have it.
+  std::optional<MotionGap> GapBetween(const MeshKey& last, const MeshKey& next) const {
+    MotionGap gap{last.frame_idx, next.frame_idx, last.time_s, last.time_s, next.time_s};
+    bool is_gap = false;
+    for (auto row = std::ranges::upper_bound(source_.read, last.frame_idx, {}, &RunFrame::frame_idx);
+         row != source_.read.end() && row->frame_idx < next.frame_idx; ++row) {
+      is_gap = is_gap || source_.chosen.empty() || source_.chosen.contains(row->frame_idx);
+      gap.held_until_s = row->timestamp_s;
+    }
+    return is_gap ? std::optional(gap) : std::nullopt;
   }
 
   std::vector<CameraKey> CameraPath() const {
@@ -210,6 +232,9 @@ class MeshMaker {
   Mesh mesh_;  // undeformed
   std::string texture_jpeg_;
   std::vector<MeshKey> keys_;
+  std::size_t even_keys_ = 0;
+  std::optional<MeshKey> last_;  // frame with a mesh
+  std::vector<MotionGap> gaps_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/datasets/surface_folder.h"
+#include "pliant/io/run_reader.h"
 #include "pliant/pipeline/surface_run.h"
 
 namespace pliant {
@@ -21,6 +23,8 @@ struct MeshSource {
   const RunMap& known;
   const SurfaceFolder& folder;
   const SequenceRequest& images;
+  const std::vector<RunFrame>& read;  // every frame that the run read; of another program's run none
+  const std::set<int>& chosen;        // frames that the surface was asked for; empty: all
 };
 
 // Told how many of how many steps are done; false: no more are wanted.

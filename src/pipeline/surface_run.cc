@@ -389,7 +389,8 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (options.mesh_columns > 0) {
     const auto folder = ReadSurfaceFolder(request.output_path);
     if (!folder.ok()) return folder.status();
-    const MeshSource meshes{*frames, *known, *folder, source};
+    const std::set<int> chosen(request.frames.begin(), request.frames.end());
+    const MeshSource meshes{*frames, *known, *folder, source, run->frames, chosen};
     const auto go_on = [&](int done, int total) {
       if (callback) callback(SurfaceStage::kMesh, done, total, 0.0);
       return request.stop == nullptr || !*request.stop;

@@ -3,7 +3,10 @@
 
 // The dense surface of a tracked run against the truth of a rigid simulated scene.
 #include <atomic>
+#include <cstddef>
+#include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +18,7 @@
 #include "e2e/e2e_support.h"
 #include "pliant/base/statistics.h"
 #include "pliant/evaluation/dense_error.h"
+#include "pliant/io/gltf.h"
 #include "pliant/pipeline/surface_run.h"
 #include "pliant/surface/normals.h"
 
@@ -113,6 +117,52 @@ TEST_F(SurfaceFiles, AreThoseOfFramesThatTheRunHas) {
       summary->warnings,
       testing::ElementsAre(testing::StartsWith("frames 9998, 9999 are not in the run, whose frames are 0 to ")));
   EXPECT_THAT(Make(options)->warnings, testing::IsEmpty());
+}
+
+// A copy of the run in which these frames are lost.
+void CopyRunWithLostFrames(const TestFolder& folder, int first, int last) {
+  std::filesystem::copy(kDefaultRun, folder.Path("run"), std::filesystem::copy_options::recursive);
+  std::istringstream rows(folder.Read("run/frames.csv"));
+  std::istringstream poses(folder.Read("run/trajectory.txt"));
+  std::string row;
+  std::string pose;
+  std::string kept_rows;
+  std::string kept_poses;
+  const std::string tracking = ",tracking,";
+  while (std::getline(rows, row)) {
+    const std::size_t state = row.find(tracking);
+    const bool has_pose = state != std::string::npos && std::getline(poses, pose);
+    const int frame_idx = std::atoi(row.c_str());
+    const bool is_lost = has_pose && first <= frame_idx && frame_idx <= last;
+    if (is_lost) row.replace(state, tracking.size(), ",lost,");
+    kept_rows += row + "\n";
+    if (has_pose && !is_lost) kept_poses += pose + "\n";
+  }
+  folder.Write("run/frames.csv", kept_rows);
+  folder.Write("run/trajectory.txt", kept_poses);
+}
+
+TEST(RigidScene, ItsSurfaceHasAGapWhereAWantedFrameIsLost) {
+  const TestFolder folder;
+  CopyRunWithLostFrames(folder, 31, 33);
+  SurfaceRequest request;
+  request.run_path = folder.Path("run");
+  request.sequence_path = kSequence;
+  request.output_path = folder.Path("surface");
+  request.frames = {26, 30, 32, 34, 38};
+  SurfaceRunOptions options;
+  options.animation_keys = 2;
+  ASSERT_TRUE(MakeSurface(request, options, {}).ok());
+  const auto mesh = ReadGlb(folder.Path("surface/surface.glb"));
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  ASSERT_EQ(mesh->gaps.size(), 1U);
+  EXPECT_EQ(mesh->gaps[0].last_frame_idx, 30);
+  EXPECT_EQ(mesh->gaps[0].next_frame_idx, 34);
+  const double step_s = 0.25 * (mesh->gaps[0].next_time_s - mesh->gaps[0].last_time_s);
+  EXPECT_NEAR(mesh->gaps[0].held_until_s, mesh->gaps[0].next_time_s - step_s, 0.1 * step_s);
+  std::vector<int> keys;
+  for (const MeshKey& key : mesh->keys) keys.push_back(key.frame_idx);
+  EXPECT_THAT(keys, testing::ElementsAre(26, 30, 34, 38));
 }
 
 // What is filled is nearly as good as what is measured around it, and changes nothing of the mesh.

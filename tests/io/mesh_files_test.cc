@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ namespace pliant {
 namespace {
 
 using testing::ElementsAre;
+using testing::FloatEq;
 using testing::HasSubstr;
 
 // A square of two triangles, 20 map units before the camera, which faces it; its texture has a seam.
@@ -102,6 +104,51 @@ TEST_F(MeshFilesTest, GltfPlaysTheKeysOneAfterTheOther) {
   EXPECT_THAT(FloatsOf(model, animation.samplers[0].input), ElementsAre(0, 1));
   EXPECT_THAT(FloatsOf(model, animation.samplers[0].output), ElementsAre(1, 0, 0, 1));
   EXPECT_THAT(model.meshes[0].weights, ElementsAre(1, 0));
+}
+
+// Tracking is lost behind frame 6 until frame 9, and between two keys until frame 19.
+TEST_F(MeshFilesTest, GltfHoldsTheLastValueThroughAGap) {
+  keys_.push_back({24, 6.0, mesh_.vertices});
+  path_ = {{2.0, {}}, {2.4, {}}, {3.0, {RotationExp({0, 0.5, 0}), Eigen::Vector3d(1, 2, 3)}}, {6.0, {}}};
+  const std::vector<MotionGap> gaps = {{6, 9, 2.4, 2.8, 3.0}, {12, 19, 3.6, 4.8, 5.0}};
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_, 3, gaps});
+  const auto& samplers = model.animations[0].samplers;
+  const testing::Matcher<std::vector<float>> times = ElementsAre(0, FloatEq(0.8F), 1, FloatEq(2.8F), 3, 4);
+  EXPECT_THAT(FloatsOf(model, samplers[0].input), times);
+  EXPECT_THAT(FloatsOf(model, samplers[0].output), ElementsAre(1, 0, 0,  //
+                                                               1, 0, 0,  //
+                                                               0, 1, 0,  //
+                                                               0, 1, 0,  //
+                                                               0, 0, 1,  //
+                                                               0, 0, 1));
+  EXPECT_THAT(FloatsOf(model, samplers[1].input), ElementsAre(0, FloatEq(0.4F), FloatEq(0.8F), 1, FloatEq(2.8F), 3, 4));
+  const std::vector<float> at = FloatsOf(model, samplers[1].output);
+  for (const std::size_t row : {1U, 2U, 5U, 6U}) EXPECT_EQ(at[3 * row], 0.0F) << row;
+  for (const std::size_t row : {3U, 4U}) EXPECT_FLOAT_EQ(at[3 * row], 0.001F) << row;
+}
+
+// A recording that began long ago: its times are as near to each other as floats can be.
+TEST_F(MeshFilesTest, GltfsTimesIncreaseThroughAGap) {
+  keys_ = {{0, 0.0, mesh_.vertices}, {4, 1e6, mesh_.vertices}, {9, 1e6 + 0.1, mesh_.vertices}};
+  const std::vector<MotionGap> gaps = {{4, 9, 1e6, 1e6 + 0.02, 1e6 + 0.1}};
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, {}, camera_, 3, gaps});
+  const std::vector<float> times = FloatsOf(model, model.animations[0].samplers[0].input);
+  EXPECT_EQ(std::ranges::adjacent_find(times, std::ranges::greater_equal()), times.end())
+      << testing::PrintToString(times);
+}
+
+TEST_F(MeshFilesTest, GltfsGapsComeBack) {
+  const std::vector<MotionGap> gaps = {{4, 9, 2.0, 2.8, 3.0}};
+  ASSERT_TRUE(WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_, 3, gaps}).ok());
+  const auto read = ReadGlb(folder_.Path("a.glb"));
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  ASSERT_EQ(read->gaps.size(), 1U);
+  EXPECT_EQ(read->gaps[0].last_frame_idx, 4);
+  EXPECT_EQ(read->gaps[0].next_frame_idx, 9);
+  EXPECT_NEAR(read->gaps[0].last_time_s, 0.0, 1e-9);
+  EXPECT_NEAR(read->gaps[0].held_until_s, 0.8, 1e-9);
+  EXPECT_NEAR(read->gaps[0].next_time_s, 1.0, 1e-9);
+  EXPECT_EQ(read->keys[1].time_s, 1.0);
 }
 
 TEST_F(MeshFilesTest, GltfsCameraLooksAtWhatOursDoes) {
