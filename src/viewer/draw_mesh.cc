@@ -250,7 +250,7 @@ MeshPainter::MeshPainter(const View& view, SurfaceColor color) : view_(view), co
 const ViewedMesh* MeshPainter::Find(std::size_t run_index, int frame_idx) const {
   const ViewedRun& run = view_.runs[run_index];
   const ViewedFrame* frame = FindFrame(run, frame_idx);
-  if (frame == nullptr) return nullptr;
+  if (frame == nullptr || !frame->world_from_cam) return nullptr;
   const auto mesh = std::ranges::find_if(run.meshes, [&](const ViewedMesh& candidate) {
     return candidate.surface.submap == frame->row.submap && IsKnownIn(candidate.surface, frame_idx);
   });

@@ -38,7 +38,7 @@ class MeshPainter {
  public:
   MeshPainter(const View& view, SurfaceColor color);
 
-  // Whether the run has a mesh of the frame's submap that is known in the frame.
+  // Whether the frame has a pose, and the run a mesh of the frame's submap that is known in it.
   bool Has(std::size_t run, int frame_idx) const { return Find(run, frame_idx) != nullptr; }
 
   // Nothing where the run has no mesh in the frame.

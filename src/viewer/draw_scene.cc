@@ -231,7 +231,7 @@ void SceneDrawer::Draw(cairo_t* drawing, const Panel& panel, std::size_t run_ind
     DrawFrustum(*frame->world_from_cam, *viewpoint.frustum, &scene);
   cairo_restore(drawing);
   std::string missing = WhyNoPose(run, frame_idx);
-  if (missing.empty() && !mesh && !run.meshes.empty()) missing = "No surface in this frame.";
+  if (!mesh && !run.meshes.empty()) missing = "No surface in this frame." + (missing.empty() ? "" : " " + missing);
   DrawParagraph(drawing, panel, missing);
   Use(drawing, kGray);
   cairo_set_line_width(drawing, 1);

@@ -28,10 +28,20 @@ struct BetweenKeys {
   float share = 0;
 };
 
-BetweenKeys KeysAround(const std::vector<MeshKey>& keys, int frame_idx) {
+// A mesh whose keys lie on both sides of a gap is that of the key on the frame's own side.
+BetweenKeys KeysAround(const GltfMesh& mesh, int frame_idx) {
+  const std::vector<MeshKey>& keys = mesh.keys;
   const auto next = std::ranges::find_if(keys, [&](const MeshKey& key) { return key.frame_idx > frame_idx; });
   const auto index = static_cast<std::size_t>(next - keys.begin());
   BetweenKeys around{index > 0 ? index - 1 : 0, std::min(index, keys.size() - 1), 0};
+  const auto gap = std::ranges::find_if(mesh.gaps, [&](const MotionGap& candidate) {
+    return keys[around.before].frame_idx <= candidate.last_frame_idx &&
+           candidate.next_frame_idx <= keys[around.after].frame_idx;
+  });
+  if (gap != mesh.gaps.end()) {
+    const std::size_t own = frame_idx <= gap->last_frame_idx ? around.before : around.after;
+    return {own, own, 0};
+  }
   const int length = keys[around.after].frame_idx - keys[around.before].frame_idx;
   if (length > 0)
     around.share = static_cast<float>(frame_idx - keys[around.before].frame_idx) / static_cast<float>(length);
@@ -66,7 +76,7 @@ std::vector<float> AreaChanges(std::span<const Eigen::Vector3f> undeformed, std:
 std::vector<float> ErrorsAt(const ViewedMesh& mesh, int frame_idx) {
   const std::size_t vertices = mesh.surface.mesh.vertices.size();
   if (mesh.errors_mm.empty()) return std::vector<float>(vertices, kUnknown);
-  const BetweenKeys around = KeysAround(mesh.surface.keys, frame_idx);
+  const BetweenKeys around = KeysAround(mesh.surface, frame_idx);
   if (around.share == 0.0F) return mesh.errors_mm[around.before];
   std::vector<float> errors;
   for (std::size_t v = 0; v < vertices; ++v) {
@@ -80,13 +90,17 @@ std::vector<float> ErrorsAt(const ViewedMesh& mesh, int frame_idx) {
 }  // namespace
 
 bool IsKnownIn(const GltfMesh& mesh, int frame_idx) {
-  return mesh.keys.empty() || (mesh.keys.front().frame_idx <= frame_idx && frame_idx <= mesh.keys.back().frame_idx);
+  const bool in_gap = std::ranges::any_of(mesh.gaps, [&](const MotionGap& gap) {
+    return gap.last_frame_idx < frame_idx && frame_idx < gap.next_frame_idx;
+  });
+  return mesh.keys.empty() ||
+         (mesh.keys.front().frame_idx <= frame_idx && frame_idx <= mesh.keys.back().frame_idx && !in_gap);
 }
 
 std::vector<Eigen::Vector3f> PositionsAt(const GltfMesh& mesh, int frame_idx) {
   assert(IsKnownIn(mesh, frame_idx));
   if (mesh.keys.empty()) return mesh.mesh.vertices;
-  const BetweenKeys around = KeysAround(mesh.keys, frame_idx);
+  const BetweenKeys around = KeysAround(mesh, frame_idx);
   std::vector<Eigen::Vector3f> positions;
   for (std::size_t v = 0; v < mesh.mesh.vertices.size(); ++v)
     positions.emplace_back((1.0F - around.share) * mesh.keys[around.before].positions[v] +

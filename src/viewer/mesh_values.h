@@ -16,10 +16,11 @@
 
 namespace pliant {
 
-// Whether it is known where the mesh is in a frame: from its first key to its last, and without keys in every frame.
+// Whether it is known where the mesh is in a frame: from its first key to its last, but not in gaps; and without keys
+// in every frame.
 bool IsKnownIn(const GltfMesh& mesh, int frame_idx);
 
-// In the mesh's world, in a frame in which it is known. Between two keys a vertex moves evenly.
+// In the mesh's world, in a frame in which it is known. Between two keys a vertex moves evenly, but in no gap.
 std::vector<Eigen::Vector3f> PositionsAt(const GltfMesh& mesh, int frame_idx);
 
 // The triangles without the seams of the texture, at which a vertex is there once for each side: of these the first.

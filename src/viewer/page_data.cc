@@ -231,6 +231,8 @@ Json MeshData(const ViewedMesh& viewed) {
     frames.push_back(key.frame_idx);
     displacements.push_back(Positions(key.positions, mesh.vertices));
   }
+  Json gaps = Json::array();
+  for (const MotionGap& gap : surface.gaps) gaps.push_back({gap.last_frame_idx, gap.next_frame_idx});
   Json errors = viewed.errors_mm.empty() ? Json() : Json::array();
   for (const std::vector<float>& error_mm : viewed.errors_mm)
     errors.push_back(PackQuantized(error_mm, 1, PackedType::kU16));
@@ -241,6 +243,7 @@ Json MeshData(const ViewedMesh& viewed) {
           {"sigma", PackQuantized(mesh.sigmas, 1, PackedType::kU16)},
           {"texture", surface.texture_jpeg.empty() ? Json() : Json(Base64(surface.texture_jpeg))},
           {"frame", frames},
+          {"gaps", gaps},
           {"displacement", displacements},
           {"error_mm", errors}};
 }

@@ -306,6 +306,21 @@ TEST(SceneDrawer, NamesTheMapWhereAFrameHasNoSurface) {
   EXPECT_TRUE(scenes.Legend({1, 2}).map);
 }
 
+TEST(SceneDrawer, ShowsNoSurfaceInAFrameWithoutAPose) {
+  const auto camera = Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5});
+  View view;
+  view.runs.push_back(RunOf(*camera));
+  GltfMesh& surface = view.runs[0].meshes.emplace_back().surface;
+  surface.mesh.vertices = {{-2, -2, 50}, {2, -2, 50}, {2, 2, 50}};
+  surface.mesh.triangles = {{0, 2, 1}};
+  surface.keys = {{0, 0.0, surface.mesh.vertices}, {2, 0.1, surface.mesh.vertices}};
+  const FigureOptions options;
+  const SceneDrawer scenes(view, options, 480, 360);
+  EXPECT_FALSE(scenes.Legend({1}).map);
+  view.runs[0].frames[1].world_from_cam.reset();
+  EXPECT_TRUE(scenes.Legend({1}).map);
+}
+
 TEST_F(FigureTest, RefusesTheSurfaceOfARunThatWasReplaced) {
   WriteSquare(folder_);
   ViewRequest request = RequestWithSurface();

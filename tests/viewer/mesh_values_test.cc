@@ -55,6 +55,19 @@ TEST(MeshValues, AMeshIsKnownFromItsFirstKeyToItsLast) {
   EXPECT_THAT(known(), ElementsAre(-1, 0, 5, 10, 11));
 }
 
+// No frame from 4 to 6 has a surface.
+TEST(MeshValues, AMeshIsNotKnownInAGapAndDoesNotMoveAcrossIt) {
+  ViewedMesh mesh = StretchedSquare();
+  mesh.errors_mm = {std::vector<float>(6, 1.0F), std::vector<float>(6, 2.0F)};
+  mesh.surface.gaps = {{.last_frame_idx = 3, .next_frame_idx = 7}};
+  for (int frame_idx = 0; frame_idx <= 10; ++frame_idx) {
+    EXPECT_EQ(IsKnownIn(mesh.surface, frame_idx), frame_idx <= 3 || frame_idx >= 7) << frame_idx;
+    if (!IsKnownIn(mesh.surface, frame_idx)) continue;
+    EXPECT_FLOAT_EQ(PositionsAt(mesh.surface, frame_idx)[4].x(), frame_idx <= 3 ? 1 : 2) << frame_idx;
+    EXPECT_THAT(MeshValues(mesh, SurfaceColor::kError, frame_idx, {}, {}), testing::Each(frame_idx <= 3 ? 1 : 2));
+  }
+}
+
 TEST(MeshValues, SeamsAreSewn) {
   const std::vector<Triangle> seamless = SeamlessTriangles(StretchedSquare().surface.mesh);
   EXPECT_THAT(seamless, ElementsAre(Triangle{0, 1, 2}, Triangle{1, 4, 2}));

@@ -226,6 +226,23 @@ for (const [keys, known] of [[2, [0, 9, 10]], [1, [10]], [0, [0, 9, 10, 11]]]) {
   });
 }
 
+// The camera is lost in frames 3 and 4; frames 6 and 7 have a pose, but no surface.
+const interrupted = runOf({ to: 11, isLost: (frame) => frame === 3 || frame === 4 });
+testMadeUp("shows no surface in lost frames and gaps, and says so", dataOf({ ...interrupted, meshes: [surfaceOf({ gaps: [[5, 8]] })] }), async (page) => {
+  await press(page, "u");   // its texture would be white
+  for (const frame of [2, 3, 4, 5, 6, 7, 8]) {
+    await goTo(page, frame);
+    await page.waitForTimeout(300);
+    const isShown = [2, 5, 8].includes(frame);
+    assert.equal(/no surface in this frame$/.test(await page.locator("#scene-caption").textContent()), !isShown, `frame ${frame}`);
+    const shown = await countPixels(page, "#scene", WHITE);
+    await press(page, "s");
+    await page.waitForTimeout(300);
+    assert.equal(await countPixels(page, "#scene", WHITE) > shown + 10000, isShown, `frame ${frame}`);
+    await press(page, "s");
+  }
+});
+
 testMadeUp("shows the surface of the frame's own submap alone", dataOf({ ...runOf({ to: 5 }), meshes: [surfaceOf({ submap: 3 })] }), async (page) => {
   await page.waitForTimeout(300);
   const white = await countPixels(page, "#scene", WHITE);

@@ -49,6 +49,7 @@ export interface MeshData {
   sigma: PackedArray;
   texture: string | null; // a JPEG file in base64
   frame: number[];
+  gaps?: [number, number][];         // the frames before and after frames that have none
   displacement: PackedArray[];
   error_mm?: PackedArray[] | null;   // one a frame: distances from the true surface
 }
@@ -165,7 +166,7 @@ async function decodeMesh(data: MeshData): Promise<Surface> {
     displacements: await Promise.all(data.displacement.map((array) => decodeNumbers(array, 3))),
     errors: await Promise.all((data.error_mm ?? []).map((array) => decodeNumbers(array, 1))),
     texture: data.texture === null ? null : bytesOfBase64(data.texture),
-  });
+  }, data.gaps ?? []);
 }
 
 export function decodePoses(poses: PackedArray): Promise<Float32Array> {

@@ -270,7 +270,7 @@ export class SceneContent {
     this.lamp.target.position.copy(target);
   }
 
-  // Of the current run: that of the frame's submap.
+  // Of the current run: that of the frame's submap, if the frame has a pose.
   private showSurface(run: Run, row: number): void {
     const { report, store } = this.page;
     const { current, position, layers, visible, surfaceColor } = store.state;
@@ -278,7 +278,7 @@ export class SceneContent {
     const wanted = visible[current] && layers.surface;
     this.lacksSurface = wanted && run.surfaces.length > 0;
     this.surfaces.forEach((meshes, index) => meshes.forEach(({ object, surface }, k) => {
-      object.visible = index === current && wanted && row >= 0 && run.frames.submap[row] === surface.submap && surface.isKnownIn(frame);
+      object.visible = index === current && wanted && run.hasPose(row) && run.frames.submap[row] === surface.submap && surface.isKnownIn(frame);
       if (!object.visible) return;
       this.lacksSurface = false;
       meshes[k].show(frame, surfaceColor);

@@ -26,8 +26,8 @@ export class Surface {
   readonly seamless: Uint32Array;
   private readonly ranges = new Map<SurfaceColor, Range>();
 
-  // `frames`: those of the keys, which grow.
-  constructor(readonly submap: number, readonly frames: number[], readonly arrays: SurfaceArrays) {
+  // `frames`: those of the keys, which grow. `gaps`: the frames before and after frames that have no surface.
+  constructor(readonly submap: number, readonly frames: number[], readonly arrays: SurfaceArrays, private readonly gaps: [number, number][] = []) {
     const { rest, triangles } = arrays;
     const first = new Map<string, number>();
     this.seamless = triangles.map((v) => {
@@ -41,9 +41,10 @@ export class Surface {
     return this.arrays.rest.length / 3;
   }
 
-  // Whether it is known where it is in the frame: from the first key to the last, and without keys in every frame.
+  // Whether it is known where it is in the frame: from the first key to the last, but not in gaps; and without keys in every frame.
   isKnownIn(frame: number): boolean {
     const { frames } = this;
+    if (this.gaps.some(([last, next]) => last < frame && frame < next)) return frames.length === 0;
     return frames.length === 0 || (frames[0] <= frame && frame <= frames[frames.length - 1]);
   }
 
@@ -83,12 +84,17 @@ export class Surface {
     return range;
   }
 
-  // The two keys around a frame, and the share of the later one.
+  // The two keys around a frame, and the share of the later one; where they lie on both sides of a gap, the key on the frame's own side.
   private keysAround(frame: number): { before: number; after: number; share: number } {
     let next = this.frames.findIndex((key) => key > frame);
     if (next < 0) next = this.frames.length;
     const before = Math.max(0, next - 1);
     const after = Math.min(next, this.frames.length - 1);
+    const gap = this.gaps.find(([last, next]) => this.frames[before] <= last && next <= this.frames[after]);
+    if (gap) {
+      const own = frame <= gap[0] ? before : after;
+      return { before: own, after: own, share: 0 };
+    }
     const length = this.frames[after] - this.frames[before];
     return { before, after, share: length > 0 ? (frame - this.frames[before]) / length : 0 };
   }
