@@ -91,6 +91,24 @@ void AddObserved(const ViewedRun& run, std::vector<Eigen::Vector3d>* points) {
     }
 }
 
+// Where vertices are in any frame.
+void AddVertices(const std::vector<ViewedMesh>& meshes, std::vector<Eigen::Vector3d>* points) {
+  constexpr std::size_t kEnough = 20000;
+  std::size_t count = 0;
+  for (const ViewedMesh& mesh : meshes)
+    count += mesh.surface.mesh.vertices.size() * std::max<std::size_t>(1, mesh.surface.keys.size());
+  const std::size_t step = 1 + count / kEnough;
+  std::size_t index = 0;
+  const auto add = [&](const std::vector<Eigen::Vector3f>& positions) {
+    for (const Eigen::Vector3f& position : positions)
+      if (index++ % step == 0) points->push_back(position.cast<double>());
+  };
+  for (const ViewedMesh& mesh : meshes) {
+    if (mesh.surface.keys.empty()) add(mesh.surface.mesh.vertices);
+    for (const MeshKey& key : mesh.surface.keys) add(key.positions);
+  }
+}
+
 void DrawMesh(cairo_t* drawing, const Panel& panel, const MeshPicture& mesh) {
   const CairoSurface surface = ImageSurface(mesh.bgra);
   cairo_save(drawing);
@@ -185,10 +203,11 @@ Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOption
   std::vector<Eigen::Vector3d> points;
   std::vector<Eigen::Vector3d> cameras;  // centers, and corners of their images
   const auto frustum = FrustumOf(run);
-  for (const auto& [id, point] : run.points) points.push_back(point.position);
-  AddObserved(run, &points);
-  for (const ViewedMesh& mesh : run.meshes)
-    for (const Eigen::Vector3f& vertex : mesh.surface.mesh.vertices) points.push_back(vertex.cast<double>());
+  if (run.meshes.empty()) {
+    for (const auto& [id, point] : run.points) points.push_back(point.position);
+    AddObserved(run, &points);
+  }
+  AddVertices(run.meshes, &points);
   Eigen::Vector4d orientation = Eigen::Vector4d::Zero();
   for (const ViewedFrame& frame : run.frames) {
     if (!frame.world_from_cam) continue;

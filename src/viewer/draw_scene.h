@@ -21,7 +21,8 @@
 
 namespace pliant {
 
-// The eye that sees all of a run, its cameras included, and the camera as it is drawn there.
+// The eye that sees all of a run, its cameras included, and the camera as it is drawn there. Of a run with meshes it
+// sees these, which reach farther than the points, of which there are more.
 struct Viewpoint {
   Orbit orbit;
   std::optional<std::array<Eigen::Vector3d, 4>> frustum;  // FrustumOf

@@ -3,6 +3,7 @@
 
 #include "pliant/viewer/figure.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -102,6 +103,30 @@ TEST(Viewpoint, ShowsAllOfASmallCameraOfAnyFieldOfView) {
       }
     }
   }
+}
+
+// It reaches farther than the points, of which there are many more, and moves to its right.
+TEST(Viewpoint, ShowsAllOfAMesh) {
+  constexpr int kNodes = 9;
+  const auto camera = Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5});
+  ViewedRun run = RunOf(*camera);
+  run.frames[0].observations.resize(5000, run.frames[0].observations[1]);
+  GltfMesh& surface = run.meshes.emplace_back().surface;
+  for (int v = 0; v < kNodes * kNodes; ++v)
+    surface.mesh.vertices.emplace_back(10 * (v % kNodes - 4), 10 * (v / kNodes - 4), 50);
+  surface.keys = {{0, 0.0, surface.mesh.vertices}, {2, 0.1, surface.mesh.vertices}};
+  for (Eigen::Vector3f& position : surface.keys[1].positions) position.x() += 40;
+  const Viewpoint viewpoint = ViewpointOf({}, run, {}, 480, 360);
+  double least = 480;
+  double largest = 0;
+  for (const MeshKey& key : surface.keys)
+    for (const Eigen::Vector3f& position : key.positions) {
+      const Eigen::Vector3d at = viewpoint.orbit.Project(position.cast<double>());
+      EXPECT_TRUE(at.x() >= 0 && at.x() <= 480 && at.y() >= 0 && at.y() <= 360) << at.transpose();
+      least = std::min(least, at.x());
+      largest = std::max(largest, at.x());
+    }
+  EXPECT_GT(largest - least, 240);
 }
 
 // Pixels of a color in a part of a picture.

@@ -50,12 +50,12 @@ export function runOf({
 
 // A square before the camera that moves away evenly, and is bent in the end. A JPEG in base64 is its texture.
 // With `errors` the true surface is known in both frames, but not at its first vertex. `keys`: how many of the two frames it has.
-// `gaps`: the frames before and after frames without a surface.
-export function surfaceOf({ texture = null, submap = 0, errors = false, keys = 2, gaps = [] } = {}) {
-  const grid = Array.from({ length: 25 }, (_, i) => [(i % 5) * 8 - 16, Math.floor(i / 5) * 8 - 16, 62]);
+// `gaps`: the frames before and after frames without a surface. `step`: between its vertices.
+export function surfaceOf({ texture = null, submap = 0, errors = false, keys = 2, gaps = [], step = 8 } = {}) {
+  const grid = Array.from({ length: 25 }, (_, i) => [(i % 5 - 2) * step, (Math.floor(i / 5) - 2) * step, 62]);
   const cells = Array.from({ length: 16 }, (_, i) => (i % 4) + 5 * Math.floor(i / 4));
   return {
-    submap, texture, rest: pack(grid, 3), uv: pack(grid.map(([x, y]) => [(x + 16) / 32, (y + 16) / 32]), 2),
+    submap, texture, rest: pack(grid, 3), uv: pack(grid.map(([x, y]) => [x / step / 4 + 0.5, y / step / 4 + 0.5]), 2),
     triangles: pack(cells.flatMap((v) => [[v, v + 5, v + 1], [v + 5, v + 6, v + 1]]), 3), sigma: pack(grid.map(([x]) => [0.5 + x / 100]), 1),
     frame: [0, 10].slice(2 - keys), gaps,
     displacement: [pack(grid.map(() => [0, 0, 0]), 3), pack(grid.map(([x]) => [0, 0, 4 + x / 8]), 3)].slice(2 - keys),

@@ -243,6 +243,20 @@ testMadeUp("shows no surface in lost frames and gaps, and says so", dataOf({ ...
   }
 });
 
+testMadeUp("begins with all of a surface that reaches farther than the points", dataOf({ ...runOf({ to: 20 }), meshes: [surfaceOf({ step: 24 })] }), async (page) => {
+  while ((await page.evaluate(() => document.documentElement.dataset.theme)) !== "dark") await press(page, "d");   // it is white
+  const counts = async () => {
+    await page.waitForTimeout(300);
+    return [await countPixels(page, "#scene", WHITE), await countPixels(page, "#scene", WHITE, 4)];
+  };
+  const [all, edge] = await counts();
+  await screenshot(page, "wide_surface");
+  await press(page, "s");
+  const [rest, restOfEdge] = await counts();
+  assert.ok(all > rest + 10000, `${all}, ${rest}`);
+  assert.ok(edge < restOfEdge + 10, `${edge}, ${restOfEdge}`);
+});
+
 testMadeUp("shows the surface of the frame's own submap alone", dataOf({ ...runOf({ to: 5 }), meshes: [surfaceOf({ submap: 3 })] }), async (page) => {
   await page.waitForTimeout(300);
   const white = await countPixels(page, "#scene", WHITE);

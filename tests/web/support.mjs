@@ -84,10 +84,10 @@ export function testMadeUp(name, data, run, options) {
   });
 }
 
-// How many pixels of an element, as it is shown, have nearly this color ("#rrggbb").
-export async function countPixels(page, selector, color) {
+// How many pixels of an element, as it is shown, have nearly this color ("#rrggbb"), not farther than `margin` from its edges.
+export async function countPixels(page, selector, color, margin = Infinity) {
   const png = (await page.locator(selector).screenshot()).toString("base64");
-  return page.evaluate(async ([base64, wanted]) => {
+  return page.evaluate(async ([base64, wanted, farthest]) => {
     const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
     const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
     const context = Object.assign(document.createElement("canvas"), { width: bitmap.width, height: bitmap.height }).getContext("2d");
@@ -95,9 +95,13 @@ export async function countPixels(page, selector, color) {
     const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
     const rgb = [1, 3, 5].map((at) => parseInt(wanted.slice(at, at + 2), 16));
     let count = 0;
-    for (let i = 0; i < data.length; i += 4) if (rgb.every((value, channel) => Math.abs(data[i + channel] - value) < 24)) ++count;
+    for (let i = 0; i < data.length; i += 4) {
+      const [x, y] = [(i / 4) % bitmap.width, Math.floor(i / 4 / bitmap.width)];
+      if (Math.min(x, y, bitmap.width - 1 - x, bitmap.height - 1 - y) > farthest) continue;
+      if (rgb.every((value, channel) => Math.abs(data[i + channel] - value) < 24)) ++count;
+    }
     return count;
-  }, [png, color]);
+  }, [png, color, margin === Infinity ? 1e9 : margin]);
 }
 
 export function state(page) {

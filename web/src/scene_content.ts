@@ -13,6 +13,7 @@ import type { Page } from "./page";
 import { lastAtMost } from "./report";
 import { readingNow } from "./ruler";
 import type { Run } from "./run";
+import type { Surface } from "./surface";
 import { SurfaceMesh } from "./surface_mesh";
 
 const FRUSTUM_OF_DEPTH = 0.15;   // from the camera's center to a corner of its image, of the median depth
@@ -32,7 +33,8 @@ export class SceneContent {
   // At the origin of the world, or at the corner of the scene that is nearest to it. Their ends are labeled.
   private readonly axesOrigin = new Vector3();
   readonly axisEnds = [new Vector3(), new Vector3(), new Vector3()];
-  // What the first view shows: nearly all of the points in any frame, and all of the cameras and the axes.
+  // What the first view shows: nearly all of the points in any frame, of a run with surfaces nearly all of their vertices, and all of
+  // the cameras and the axes.
   readonly extent: { points: Vector3[]; all: Vector3[] } = { points: [], all: [] };
 
   private readonly map = new Marks(2.5, 0);
@@ -233,7 +235,8 @@ export class SceneContent {
       all.push(...(report.camera.corners ? this.frustumAt(pose, i / 7, report.camera.corners) : [poseOf(pose, i / 7).position]));
     });
     for (const run of report.runs) {
-      sample(run.position.values, run.observations, 3, (i) => {
+      for (const surface of run.surfaces) points.push(...verticesOf(surface).map((vertex) => new Vector3(...vertex)));
+      if (run.surfaces.length === 0) sample(run.position.values, run.observations, 3, (i) => {
         if (!Number.isNaN(run.position.values[i])) points.push(new Vector3().fromArray(run.position.values, i));
       });
       addCameras(run.pose.values, run.rows);
@@ -455,6 +458,21 @@ function setPicture(picture: Mesh<BufferGeometry, MeshBasicMaterial>, [, ...corn
   const attribute = picture.geometry.getAttribute("position") as BufferAttribute;
   corners.forEach((corner, i) => corner.toArray(attribute.array, 3 * i));
   attribute.needsUpdate = true;
+}
+
+// At most about 20,000, where they are in any of its frames.
+function verticesOf(surface: Surface): [number, number, number][] {
+  const { rest, displacements } = surface.arrays;
+  const count = surface.vertices * Math.max(1, displacements.length);
+  const step = Math.max(1, Math.floor(count / 20000));
+  const vertices: [number, number, number][] = [];
+  for (let index = 0; index < count; index += step) {
+    const i = 3 * (index % surface.vertices);
+    const moved = displacements[Math.floor(index / surface.vertices)];
+    const at = (axis: number) => rest[i + axis] + (moved ? moved[i + axis] : 0);
+    vertices.push([at(0), at(1), at(2)]);
+  }
+  return vertices;
 }
 
 // At most 20,000 entries of an array whose rows have n numbers.
