@@ -32,6 +32,7 @@ constexpr float kNear = 0.02F;
 constexpr float kFar = 200.0F;
 constexpr double kWidestViewDeg = 150.0;  // to both sides; a pinhole's view ends before 180
 constexpr const char* kGenerator = "Pliant ";
+constexpr const char* kUnlit = "KHR_materials_unlit";
 constexpr const char* kSigma = "_SIGMA";          // an attribute of our own: standard deviation of the distance
 constexpr const char* kFrames = "frames";         // extras: of the keys
 constexpr const char* kSigmaUnit = "sigma_unit";  // extras; earlier versions, which had map units, lack it
@@ -185,6 +186,9 @@ int AddMaterial(std::string_view texture_jpeg, ModelBuilder* builder) {
     model.textures.push_back(entry);
     material.pbrMetallicRoughness.baseColorTexture.index = 0;
   }
+  // The texture has the light of the endoscope in it already.
+  material.extensions.emplace(kUnlit, tinygltf::Value(tinygltf::Value::Object()));
+  model.extensionsUsed.emplace_back(kUnlit);
   model.materials.push_back(material);
   return 0;
 }

@@ -205,6 +205,14 @@ TEST_F(MeshFilesTest, GltfHasTheTextureInside) {
   EXPECT_FLOAT_EQ(uvs[3], 0.5F);
 }
 
+TEST_F(MeshFilesTest, GltfsTextureIsShownAsItWasRecorded) {
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_, 3});
+  EXPECT_THAT(model.extensionsUsed, ElementsAre("KHR_materials_unlit"));
+  EXPECT_THAT(model.extensionsRequired, testing::IsEmpty());  // a program that does not know it shows the mesh, too
+  ASSERT_EQ(model.materials.size(), 1U);
+  EXPECT_TRUE(model.materials[0].extensions.contains("KHR_materials_unlit"));
+}
+
 TEST_F(MeshFilesTest, GltfWithoutTextureHasColorsAndWithoutKeysIsStill) {
   const tinygltf::Model model = WriteAndRead({mesh_, "", {}, {}, camera_, 0});
   EXPECT_TRUE(model.images.empty());
