@@ -67,7 +67,9 @@ Result<std::vector<std::vector<ViewedMesh>>> ReadMeshes(const ViewRequest& reque
     const std::vector<fs::path> files = MeshFilesOf(path);
     if (files.empty())
       return Status(ErrorCode::kNotFound,
-                    Quoted(path) + " has no surface.glb to show; make it again with pliant surface");
+                    Quoted(path) +
+                        " has no surface.glb to show; make it again with pliant surface, with --Surface.gltf true and "
+                        "--Surface.mesh_columns above 0");
     for (const fs::path& file : files) {
       auto mesh = ReadGlb(file.string());
       if (!mesh.ok()) return mesh.status();

@@ -398,7 +398,9 @@ TEST_F(ViewTest, ASurfaceOfAnotherRunIsRefused) {
   std::filesystem::remove_all(folder_.Path("other"));
   EXPECT_TRUE(OpenView(request, {}).ok());
   std::filesystem::remove(folder_.Path("surface/surface.glb"));
-  EXPECT_THAT(OpenView(request, {}).status().message(), HasSubstr("has no surface.glb to show"));
+  EXPECT_THAT(OpenView(request, {}).status().message(),
+              AllOf(HasSubstr("has no surface.glb to show"), HasSubstr("--Surface.gltf true"),
+                    HasSubstr("--Surface.mesh_columns")));
   request.surface_paths = {folder_.Path("nowhere")};
   EXPECT_EQ(OpenView(request, {}).status().code(), ErrorCode::kNotFound);
 }
