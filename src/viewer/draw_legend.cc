@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "viewer/color_maps.h"
 #include "viewer/draw_image.h"
-#include "viewer/viridis.h"
 
 namespace pliant {
 namespace {
@@ -65,10 +65,10 @@ void DrawScale(cairo_t* drawing, double left, double baseline, double right, con
   draw_text(scale.low);
   const double bar_right = std::min(left + kBar * kText, right);
   cairo_pattern_t* colors = cairo_pattern_create_linear(left, 0, bar_right, 0);
-  constexpr int kStops = 16;
+  constexpr int kStops = 33;  // odd: one of them is the middle
   for (int i = 0; i < kStops; ++i) {
     const double share = i / (kStops - 1.0);
-    const auto [red, green, blue] = ViridisAt(share);
+    const auto [red, green, blue] = ColorAt(scale.map, share);
     cairo_pattern_add_color_stop_rgb(colors, share, red / 255, green / 255, blue / 255);
   }
   cairo_set_source(drawing, colors);

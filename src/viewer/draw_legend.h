@@ -9,6 +9,7 @@
 #include <string>
 
 #include "pliant/viewer/view.h"
+#include "viewer/color_maps.h"
 #include "viewer/drawing.h"
 
 namespace pliant {
@@ -21,6 +22,7 @@ struct ColorScale {
   std::string title;  // with the unit
   std::string low;
   std::string high;
+  ColorMap map = ColorMap::kViridis;
 };
 
 struct LegendContent {

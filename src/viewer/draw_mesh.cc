@@ -17,8 +17,8 @@
 #include "image/image_size.h"
 #include "pliant/base/text.h"
 #include "pliant/surface/mesh_raster.h"
+#include "viewer/color_maps.h"
 #include "viewer/view_lookup.h"
-#include "viewer/viridis.h"
 
 namespace pliant {
 namespace {
@@ -198,7 +198,8 @@ ColorScale ScaleOf(SurfaceColor color, const ValueRange& range, bool in_millimet
   std::string title(EnumName(color));
   std::ranges::replace(title, '_', ' ');
   const double factor = is_change ? 100 : 1;
-  return {title + ", " + unit, FormatNumber("%.3g", factor * range.low), FormatNumber("%.3g", factor * range.high)};
+  return {title + ", " + unit, FormatNumber("%.3g", factor * range.low), FormatNumber("%.3g", factor * range.high),
+          is_change ? ColorMap::kDiverging : ColorMap::kViridis};
 }
 
 }  // namespace
@@ -274,7 +275,7 @@ std::optional<MeshPicture> MeshPainter::Paint(std::size_t run_index, int frame_i
   const std::vector<float> values = MeshValues(*mesh, color_, frame_idx, seen.positions, seamless);
   return lit.Picture([&](std::size_t t, const Eigen::Vector3f& weights) {
     const auto [red, green, blue] =
-        ViridisAt((Mean(values, seamless[t], weights) - range_.low) / (range_.high - range_.low));
+        ColorAt(scale_->map, (Mean(values, seamless[t], weights) - range_.low) / (range_.high - range_.low));
     return cv::Vec3f(blue, green, red);
   });
 }

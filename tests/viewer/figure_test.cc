@@ -296,6 +296,18 @@ TEST_F(FigureTest, DrawsTheSurfaceInTheColorsOfItsValues) {
   EXPECT_EQ(CountPixels(behind(cv::Range(400, bottom), cv::Range(0, 488)), lowest), 0);
 }
 
+TEST_F(FigureTest, DrawsAChangeOfAreaInColorsOfBothSigns) {
+  WriteSquare(folder_);
+  options_.panel_width_px = 480;
+  options_.surface_color = SurfaceColor::kAreaChange;
+  ASSERT_TRUE(WriteFigure(RequestWithSurface(), options_, {10, 14}, folder_.Path("figure.png")).ok());
+  const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+  const cv::Mat legend = figure.rowRange(figure.rows - static_cast<int>(kLine), figure.rows);
+  EXPECT_GT(CountPixels(legend, {192, 76, 59}), kMinLine);  // blue, and no violet of viridis
+  EXPECT_GT(CountPixels(legend, {38, 4, 180}), kMinLine);
+  EXPECT_EQ(CountPixels(legend, {84, 1, 68}), 0);
+}
+
 // The keys are the frames 10 and 14.
 TEST_F(FigureTest, ShowsNoSurfaceAfterItsLastKeyAndSaysSo) {
   WriteSquare(folder_);

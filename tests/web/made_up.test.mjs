@@ -174,8 +174,11 @@ testMadeUp("shows the surface, colored by what is chosen", dataOf(withSurface), 
   await press(page, "u");
   assert.match(await legend(), /0\s*6\s*map units/);   // displaced by 2 to 6
   await screenshot(page, "surface");
+  const gradient = () => page.locator("#surface-gradient").evaluate((bar) => bar.style.backgroundImage);
+  assert.match(await gradient(), /^linear-gradient\(to right, rgb\(68, 1, 84\)/);
   await press(page, "u");
   assert.match(await legend(), /%/);
+  assert.match(await gradient(), /^linear-gradient\(to right, rgb\(59, 76, 192\).* rgb\(221, 221, 221\).* rgb\(180, 4, 38\)\)$/);
   await press(page, "u");
   assert.equal((await page.evaluate(() => window.pliant.state())).surfaceColor, "uncertainty");
   assert.match(await legend(), /0\s*0.660\s*map units/);

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Colors that the color-blind tell apart: viridis for figures, Okabe and Ito's for things.
+// Colors that the color-blind tell apart: viridis for magnitudes, cool to warm for what has a sign (as in figures:
+// src/viewer/color_maps.h), Okabe and Ito's for things.
 
 import type { Report } from "./report";
 import type { Run } from "./run";
@@ -48,17 +49,29 @@ const VIRIDIS = [
   0x440154, 0x481a6c, 0x472f7d, 0x414487, 0x39568c, 0x31688e, 0x2a788e, 0x23888e, 0x1f988b, 0x22a884, 0x35b779, 0x54c568, 0x7ad151,
   0xa5db36, 0xd2e21b, 0xfde725,
 ];
-const LEVELS = 64;
-const TABLE = Array.from({ length: LEVELS }, (_, level) => {
-  const at = (level / (LEVELS - 1)) * (VIRIDIS.length - 1);
-  const index = Math.min(Math.floor(at), VIRIDIS.length - 2);
-  const mix = (shift: number) => {
-    const from = (VIRIDIS[index] >> shift) & 255;
-    const to = (VIRIDIS[index + 1] >> shift) & 255;
-    return Math.round(from + (to - from) * (at - index)) << shift;
-  };
-  return mix(16) | mix(8) | mix(0);
-});
+// Moreland's, whose gray middle is 0.
+const COOL_TO_WARM = [
+  0x3b4cc0, 0x4d68d7, 0x6282ea, 0x779af7, 0x8db0fe, 0xa3c2ff, 0xb8d0f9, 0xccd9ee, 0xdddddd, 0xecd3c5, 0xf5c4ad, 0xf7b194, 0xf49a7b,
+  0xec7f63, 0xde604d, 0xcb3e38, 0xb40426,
+];
+const STOPS = { viridis: VIRIDIS, diverging: COOL_TO_WARM };
+export type ColorMap = keyof typeof STOPS;
+
+const LEVELS = 65;   // odd: one of them is the middle
+const TABLES: Record<ColorMap, number[]> = { viridis: tableOf(VIRIDIS), diverging: tableOf(COOL_TO_WARM) };
+
+function tableOf(stops: number[]): number[] {
+  return Array.from({ length: LEVELS }, (_, level) => {
+    const at = (level / (LEVELS - 1)) * (stops.length - 1);
+    const index = Math.min(Math.floor(at), stops.length - 2);
+    const mix = (shift: number) => {
+      const from = (stops[index] >> shift) & 255;
+      const to = (stops[index + 1] >> shift) & 255;
+      return Math.round(from + (to - from) * (at - index)) << shift;
+    };
+    return mix(16) | mix(8) | mix(0);
+  });
+}
 const UNKNOWN = 0x8c959f;
 
 // The mode in which runs are told apart; it is there where there are several.
@@ -124,10 +137,10 @@ export class Coloring {
   }
 }
 
-export function gradientColor(value: number, low: number, high: number): number {
+export function gradientColor(value: number, low: number, high: number, map: ColorMap = "viridis"): number {
   if (!(value === value)) return UNKNOWN;
   const level = Math.round(((value - low) / (high - low)) * (LEVELS - 1));
-  return TABLE[level < 0 ? 0 : level >= LEVELS ? LEVELS - 1 : level] ?? UNKNOWN;
+  return TABLES[map][level < 0 ? 0 : level >= LEVELS ? LEVELS - 1 : level] ?? UNKNOWN;
 }
 
 // Of "#rrggbb".
@@ -139,4 +152,7 @@ export function css(color: number): string {
   return `#${color.toString(16).padStart(6, "0")}`;
 }
 
-export const GRADIENT = `linear-gradient(to right, ${VIRIDIS.map(css).join(", ")})`;
+// Of CSS.
+export function gradientOf(map: ColorMap): string {
+  return `linear-gradient(to right, ${STOPS[map].map(css).join(", ")})`;
+}

@@ -3,8 +3,15 @@
 //
 // A mesh of the tissue that a run has seen, where it is in a frame, and the figures that it can be colored by.
 
+import type { ColorMap } from "./colors";
+
 export const SURFACE_COLORS = ["image", "displacement", "area_change", "uncertainty", "error"] as const;
 export type SurfaceColor = (typeof SURFACE_COLORS)[number];
+
+// A change of area has a sign.
+export function colorMapOf(color: SurfaceColor): ColorMap {
+  return color === "area_change" ? "diverging" : "viridis";
+}
 
 export interface SurfaceArrays {
   rest: Float32Array;             // x y z, undeformed

@@ -4,8 +4,8 @@
 // A surface in the 3D view: with its texture, which has the light that it was seen in, or colored and lit by the viewer's lamp.
 
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, MeshBasicMaterial, MeshLambertMaterial, Texture } from "three";
-import { gradientColor } from "./colors";
-import type { Surface, SurfaceColor } from "./surface";
+import { type ColorMap, gradientColor } from "./colors";
+import { type Range, type Surface, type SurfaceColor, colorMapOf } from "./surface";
 
 export class SurfaceMesh {
   readonly object: Mesh;
@@ -47,14 +47,14 @@ export class SurfaceMesh {
     }
     this.object.material = this.colored;
     this.geometry.computeVertexNormals();
-    this.paint(this.surface.values(color, frame, positions), this.surface.range(color));
+    this.paint(this.surface.values(color, frame, positions), this.surface.range(color), colorMapOf(color));
   }
 
-  private paint(values: Float32Array, { low, high }: { low: number; high: number }): void {
+  private paint(values: Float32Array, { low, high }: Range, map: ColorMap): void {
     const attribute = this.geometry.getAttribute("color") as BufferAttribute;
     const color = new Color();
     values.forEach((value, v) => {
-      color.setHex(gradientColor(value, low, high));
+      color.setHex(gradientColor(value, low, high, map));
       attribute.setXYZ(v, color.r, color.g, color.b);
     });
     attribute.needsUpdate = true;

@@ -3,13 +3,13 @@
 //
 // The runs, the color mode with its legend, the layers of the 3D view, the theme.
 
-import { GRADIENT, type Mode, colorModes, paletteOf, runColor } from "./colors";
+import { type Mode, colorModes, gradientOf, paletteOf, runColor } from "./colors";
 import { byId, element, setText, short } from "./dom";
 import { RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
 import type { Report } from "./report";
 import { type Changed, LAYERS, type Layer, THEMES, type Theme, VIEWS, anyOf } from "./state";
-import { SURFACE_COLORS, type SurfaceColor } from "./surface";
+import { SURFACE_COLORS, type SurfaceColor, colorMapOf } from "./surface";
 
 const SHAPE_SIGNS = { square: "■", triangle: "▲", diamond: "◆" } as Record<string, string>;
 const LAYER_TITLES: Record<Layer, string> = {
@@ -30,14 +30,13 @@ export class Toolbar {
   constructor(private readonly page: Page) {
     const { report, store } = page;
     this.color.addEventListener("change", () => store.change({ color: this.color.value }));
-    byId("gradient").style.backgroundImage = GRADIENT;
+    byId("gradient").style.backgroundImage = gradientOf("viridis");
     this.runs = report.runs.map((run, index) => this.makeRun(run.name, index));
     for (const layer of LAYERS) this.makeLayer(layer);
     byId("surface-tools").hidden = !hasSurface(report);
     this.surfaceColors = SURFACE_COLORS.filter((color) => color !== "error" || hasSurfaceErrors(report));
     this.surfaceColor.append(...this.surfaceColors.map((color) => element("option", { value: color, textContent: color.replace("_", " ") })));
     this.surfaceColor.addEventListener("change", () => store.change({ surfaceColor: this.surfaceColor.value as SurfaceColor }));
-    byId("surface-gradient").style.backgroundImage = GRADIENT;
     this.trail.addEventListener("input", () => store.change({ trail: Number(this.trail.value) }));
     for (const view of VIEWS) byId(`view-${view}`).addEventListener("click", () => store.change({ view }));
     byId("theme").addEventListener("click", () => this.cycleTheme());
@@ -164,6 +163,7 @@ export class Toolbar {
     byId("surface-scale").hidden = surfaceColor === "image" || !surface;
     if (surfaceColor === "image" || !surface) return;
     const { low, high } = surface.range(surfaceColor);
+    byId("surface-gradient").style.backgroundImage = gradientOf(colorMapOf(surfaceColor));
     const change = surfaceColor === "area_change";
     setText(byId("surface-low"), change ? `${short(100 * low)}` : short(low));
     setText(byId("surface-high"), change ? `${short(100 * high)} %` : `${short(high)} ${surfaceColor === "error" ? "mm" : report.unit}`);
