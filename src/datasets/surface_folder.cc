@@ -3,6 +3,9 @@
 
 #include "pliant/datasets/surface_folder.h"
 
+#include <cstdint>
+#include <limits>
+#include <set>
 #include <system_error>
 
 #include <nlohmann/json.hpp>
@@ -32,6 +35,23 @@ bool AreRight(const ComparedWindows& windows) {
 // It names a file in the folders of the surface, and no other.
 bool IsFileName(const std::string& name) { return !name.empty() && std::filesystem::path(name).filename() == name; }
 
+// Throws as JSON's readers do where it is no frame's number.
+int FrameNumber(const nlohmann::json& json) {
+  if (!json.is_number_integer() || json.get<std::int64_t>() < 0 ||
+      json.get<std::int64_t>() > std::numeric_limits<int>::max())
+    throw nlohmann::json::type_error::create(302, "no frame's number", &json);
+  return json.get<int>();
+}
+
+// Throws likewise.
+SurfaceFolder::Frame FrameOf(const nlohmann::json& json) {
+  SurfaceFolder::Frame frame{
+      FrameNumber(json.at("frame")), json.at("name").get<std::string>(), {}, json.value("pair", false)};
+  for (const auto& neighbor : json.value("neighbors", nlohmann::json::array()))
+    frame.neighbors.push_back(FrameNumber(neighbor));
+  return frame;
+}
+
 }  // namespace
 
 Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
@@ -51,13 +71,16 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
                     Quoted(summary) + " says that the surface was never finished; make it again");
     folder.run = json.value("run", "");
     folder.trajectory_checksum = json.value("trajectory_crc32", "");
+    std::set<int> known;
     for (const auto& frame : json.at("frames")) {
+      if (const int frame_idx = FrameNumber(frame.at("frame")); !known.insert(frame_idx).second)
+        return Status(ErrorCode::kUnreadable,
+                      Quoted(summary) + " has frame " + std::to_string(frame_idx) + " more than once");
       if (!frame.at("note").get<std::string>().empty()) {
-        folder.frames_without_depth.push_back(frame.at("frame").get<int>());
+        folder.frames_without_depth.push_back(FrameNumber(frame.at("frame")));
         continue;
       }
-      folder.frames.push_back({frame.at("frame").get<int>(), frame.at("name").get<std::string>(),
-                               frame.value("neighbors", std::vector<int>()), frame.value("pair", false)});
+      folder.frames.push_back(FrameOf(frame));
       if (!IsFileName(folder.frames.back().file_name))
         return Status(ErrorCode::kUnreadable, Quoted(summary) + " names a frame " +
                                                   Quoted(folder.frames.back().file_name) +

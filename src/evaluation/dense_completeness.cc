@@ -131,6 +131,10 @@ Result<std::optional<DenseCompleteness>> ComputeDenseCompleteness(const SurfaceF
         (*truth_mm)->size() != dense->depth.size())
       return Status(ErrorCode::kMismatch, "image and true depth of frame " + std::to_string(frame.frame_idx) +
                                               " have not the size of the surface; give the sequence that it is of");
+    if (std::ranges::any_of(frame.neighbors, [&](int neighbor) { return neighbor >= images->size(); }))
+      return Status(ErrorCode::kMismatch, "frame " + std::to_string(frame.frame_idx) +
+                                              " of the surface was compared with frames that the sequence does not "
+                                              "have; give the sequence that it is of");
     const cv::Mat valid = ValidMask((*image)->image, (*image)->mask, masks);
     int with_truth = 0;
     const PixelList pixels =

@@ -294,7 +294,7 @@ std::optional<Eigen::Vector3d> RayTowards(const Camera& camera, const Eigen::Vec
   constexpr int kSteps = 20;
   const Eigen::Vector2d center(0.5 * (camera.width() - 1), 0.5 * (camera.height() - 1));
   for (int step = kSteps; step > 0; --step)
-    if (const auto ray = camera.Unproject(center + static_cast<double>(step) / kSteps * (pixel - center))) return ray;
+    if (auto ray = camera.Unproject(center + static_cast<double>(step) / kSteps * (pixel - center))) return ray;
   return std::nullopt;
 }
 

@@ -25,8 +25,11 @@ constexpr std::size_t kMaxComment = 65535;
 constexpr int kStored = 0;
 constexpr int kDeflated = 8;
 constexpr std::uint32_t kInZip64 = 0xffffffff;  // instead of a number that needs 8 bytes
-constexpr std::size_t kMaxRatio = 1032;         // of what deflate can make of a byte
-constexpr std::uint32_t kDate = 0x21;           // 1980-01-01, the first that there is
+// What is larger than this is not unpacked where it is so many times smaller in the file.
+constexpr std::size_t kMaxPacked = std::size_t{64} << 20;
+constexpr std::size_t kMaxUsualRatio = 50;
+constexpr std::size_t kMaxRatio = 1032;  // of what deflate can make of a byte
+constexpr std::uint32_t kDate = 0x21;    // 1980-01-01, the first that there is
 constexpr std::string_view kNpyEnding = ".npy";
 
 std::uint32_t Unsigned(std::string_view bytes, std::size_t offset, std::size_t width) {
@@ -111,6 +114,9 @@ std::string Unpack(std::string_view bytes, const ZipEntry& entry, std::string* o
     *out = *packed;
   } else if (entry.method == kDeflated) {
     if (entry.size > kMaxRatio * (packed->size() + 1)) return "is damaged";
+    if (entry.size > kMaxPacked && entry.size > kMaxUsualRatio * packed->size())
+      return "has " + std::to_string(entry.size >> 20) + " MB in " + std::to_string(packed->size() >> 10) +
+             " kB, as no track has; save it with np.savez, or cut it into parts";
     out->resize(entry.size);
     if (!Inflate(*packed, out)) return "is damaged";
   } else {

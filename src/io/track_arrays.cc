@@ -44,6 +44,7 @@ Status CheckTracks(const std::string& path, const NpyArray& tracks) {
   const auto axes = AxesOf(tracks, 3);
   if (axes.size() != 3 || axes[2] != 2)
     return wrong("have the shape " + ShapeText(tracks.shape) + "; it has to be (frames, points, 2) with x before y");
+  if (axes[0] == 0) return wrong("have no frame");
   if (axes[0] > kMaxAxis || axes[1] > kMaxAxis) return wrong("have more than 2^31 frames or points");
   if (tracks.kind == NpyArray::Kind::kBool) return wrong("are bools; save pixels as np.float32");
   return Status::Ok();

@@ -303,6 +303,42 @@ std::string StillWarning(const std::vector<PosedFrame>& frames, const std::vecto
          " frames: displacement and strain of the mesh are 0 there, whatever the tissue did";
 }
 
+// Of what was made.
+void AddWarnings(const SurfaceRunOptions& options, const std::vector<PosedFrame>& frames, const Plan& plan,
+                 const RunMap& known, SurfaceSummary* summary) {
+  const std::string of_points = options.mesh_columns > 0 ? StillWarning(frames, plan.references, known) : std::string();
+  for (const std::string& warning : {ProvisionalWarning(summary->frames), of_points})
+    if (!warning.empty()) summary->warnings.push_back(warning);
+}
+
+// What the meshes of a surface are made of, besides its depths.
+struct MeshInput {
+  const std::vector<PosedFrame>& frames;
+  const RunMap& known;
+  const SequenceRequest& source;
+  const Run& run;
+};
+
+Status AddMeshes(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceProgress& callback,
+                 const MeshInput& input, SurfaceSummary* summary) {
+  const auto folder = ReadSurfaceFolder(request.output_path);
+  if (!folder.ok()) return folder.status();
+  const std::set<int> chosen(request.frames.begin(), request.frames.end());
+  const MeshSource meshes{input.frames, input.known, *folder, input.source, input.run.frames, chosen};
+  const auto go_on = [&](int done, int total) {
+    if (callback) callback(SurfaceStage::kMesh, done, total, 0.0);
+    return request.stop == nullptr || !*request.stop;
+  };
+  const auto finished = MakeMeshes(meshes, options, ThreadsOf(options), go_on);
+  if (!finished.ok()) return finished.status();
+  summary->stopped = !*finished;
+  if (*finished && !HasMesh(request.output_path))
+    summary->warnings.push_back(
+        "there is no mesh: its vertices are too far apart, or too few pixels have a depth, for a triangle; raise "
+        "Surface.mesh_columns");
+  return Status::Ok();
+}
+
 Status NoFrameChosen(const SurfaceRequest& request, const Run& run, const std::vector<SurfaceFrame>& missing) {
   if (!missing.empty() &&
       std::ranges::all_of(missing, [](const SurfaceFrame& frame) { return frame.note == kNotInRun; }))
@@ -370,10 +406,7 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
       SurfaceMaker(request, options, callback, *estimator, ComparedWindowPx(tracked, options.depth), &*writer)
           .Make(*frames, plan, *known, &images, &summary);
   if (images.AreOfOtherImages()) summary.warnings.push_back(kOtherImages);
-  for (const std::string& warning :
-       {ProvisionalWarning(summary.frames),
-        options.mesh_columns > 0 ? StillWarning(*frames, plan.references, *known) : std::string()})
-    if (!warning.empty()) summary.warnings.push_back(warning);
+  AddWarnings(options, *frames, plan, *known, &summary);
   std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
   // Until the meshes are there too, the folder says that it was interrupted.
   const bool stopped = summary.stopped || !made.ok();
@@ -386,23 +419,9 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
                                                 (images.AreOfOtherImages() ? std::string("; ") + kOtherImages : ""));
   if (stopped) return summary;
   summary.stopped = false;
-  if (options.mesh_columns > 0) {
-    const auto folder = ReadSurfaceFolder(request.output_path);
-    if (!folder.ok()) return folder.status();
-    const std::set<int> chosen(request.frames.begin(), request.frames.end());
-    const MeshSource meshes{*frames, *known, *folder, source, run->frames, chosen};
-    const auto go_on = [&](int done, int total) {
-      if (callback) callback(SurfaceStage::kMesh, done, total, 0.0);
-      return request.stop == nullptr || !*request.stop;
-    };
-    const auto finished_meshes = MakeMeshes(meshes, options, ThreadsOf(options), go_on);
-    if (!finished_meshes.ok()) return finished_meshes.status();
-    summary.stopped = !*finished_meshes;
-    if (!summary.stopped && !HasMesh(request.output_path))
-      summary.warnings.push_back(
-          "there is no mesh: its vertices are too far apart, or too few pixels have a depth, for "
-          "a triangle; raise Surface.mesh_columns");
-  }
+  if (options.mesh_columns > 0)
+    if (Status status = AddMeshes(request, options, callback, {*frames, *known, source, *run}, &summary); !status.ok())
+      return status;
   if (Status status = writer->Finish(request, options, summary); !status.ok()) return status;
   return summary;
 }

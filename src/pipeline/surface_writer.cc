@@ -77,7 +77,7 @@ SurfaceFileNames::SurfaceFileNames(const std::map<int, std::string>& images) : i
 }
 
 std::string SurfaceFileNames::Of(int frame_idx) const {
-  const std::string number = native::FrameFileName(frame_idx);
+  std::string number = native::FrameFileName(frame_idx);
   const auto image = images_.find(frame_idx);
   if (image == images_.end()) return number;
   const std::string stem = StemOf(image->second);
@@ -87,13 +87,17 @@ std::string SurfaceFileNames::Of(int frame_idx) const {
 Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const SurfaceSource& source,
                                             const SurfaceRunOptions& options) {
   const fs::path folder = path;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return Unwritable(folder);
+  auto lock = FolderLock::Take(folder);
+  if (!lock.ok()) return lock.status();
   if (Status status = RemoveEarlierSurface(folder); !status.ok()) return status;
   std::vector<const char*> kinds = {native::kDepthFolder, surface::kConfidenceFolder};
   if (options.fill > 0) kinds.push_back(surface::kFilledFolder);
   if (options.exr) kinds.push_back(kExrFolder);
   if (options.npy) kinds.push_back(kNpyFolder);
   if (options.normals_png) kinds.push_back(kNormalsFolder);
-  std::error_code error;
   for (const char* kind : kinds) {
     fs::create_directories(folder / kind, error);
     if (error) return Unwritable(folder / kind);
@@ -108,7 +112,7 @@ Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Surfa
   if (Status status = WriteFileAtomically((folder / surface::kSummaryFile).string(), "{\"status\": \"interrupted\"}\n");
       !status.ok())
     return status;
-  return SurfaceWriter(folder, source, scale, options);
+  return SurfaceWriter(folder, *std::move(lock), source, scale, options);
 }
 
 Status SurfaceWriter::Write(const SurfaceFrame& frame, const SurfaceMaps& maps) {

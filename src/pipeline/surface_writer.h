@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "pliant/base/folder_lock.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/pipeline/surface_run.h"
@@ -58,14 +59,17 @@ class SurfaceWriter {
   Status Finish(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceSummary& summary);
 
  private:
-  SurfaceWriter(std::filesystem::path path, SurfaceSource source, double depth_scale, const SurfaceRunOptions& options)
+  SurfaceWriter(std::filesystem::path path, FolderLock lock, SurfaceSource source, double depth_scale,
+                const SurfaceRunOptions& options)
       : path_(std::move(path)),
+        lock_(std::move(lock)),
         source_(std::move(source)),
         depth_scale_(depth_scale),
         exr_(options.exr),
         npy_(options.npy) {}
 
   std::filesystem::path path_;
+  FolderLock lock_;
   SurfaceSource source_;
   double depth_scale_;
   bool exr_;

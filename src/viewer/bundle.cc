@@ -152,6 +152,19 @@ std::string ReplacedAll(std::string text, const std::string& from, const std::st
   return text;
 }
 
+// No line of ours is that long, and the matcher of regular expressions runs out of stack on longer ones.
+std::string WithoutLongLines(const std::string& text) {
+  constexpr std::size_t kLongest = 8000;
+  std::string shortened;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    shortened += end - begin > kLongest ? "<long line>" : text.substr(begin, end - begin);
+    if (end < text.size()) shortened += '\n';
+    begin = end + 1;
+  }
+  return shortened;
+}
+
 std::string Cleaned(std::string sentence, const std::vector<fs::path>& known) {
   constexpr std::size_t kLongest = 4000;  // of a sentence of ours
   if (sentence.size() > kLongest) sentence = "<long text>";
@@ -191,7 +204,8 @@ std::string CleanedSummary(const std::string& text, const std::vector<fs::path>&
 }
 
 // Of config.yaml: `name: value  # [unit] why`; units of files and folders are FILE, DIR, file and path.
-std::string CleanedOptions(const std::string& yaml) {
+std::string CleanedOptions(const std::string& options) {
+  const std::string yaml = WithoutLongLines(options);
   static const std::regex path_option(R"re((\n\s+\w+: )([^"\s#][^\s#]*|"[^"\n]+")(?=\s+# \[(FILE|DIR|file|path)\]))re");
   return WithoutPaths(std::regex_replace(yaml, path_option, "$1<path>"));
 }
@@ -326,7 +340,8 @@ class Bundle {
 
 }  // namespace
 
-std::string WithoutPaths(const std::string& text) {
+std::string WithoutPaths(const std::string& any_text) {
+  const std::string text = WithoutLongLines(any_text);
   // In single quotes; from a / on; with a / and an ending.
   static const std::regex path_pattern(
       R"re('([^'\n]*/[^'\n]*)'|(^|[\s"'=:(,\[])(/[^\s/"',)\]][^\s"',)\]]*|[^\s"'=:(,\[/]+/[^\s"',)\]]*\.[A-Za-z]\w*))re");

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -68,6 +69,21 @@ TEST_F(SurfaceFolderFile, ComparedNoWindowsThatCannotBe) {
     ASSERT_FALSE(surface.ok()) << windows;
     EXPECT_EQ(surface.status().code(), ErrorCode::kUnreadable);
     EXPECT_THAT(surface.status().message(), HasSubstr("windows that were compared what cannot be")) << windows;
+  }
+}
+
+TEST_F(SurfaceFolderFile, ItsFramesAreNumbersThatComeOnce) {
+  for (const auto& [number, neighbors, what] :
+       {std::tuple("4", "1", "has frame 4 more than once"), std::tuple("1e300", "1", "of another kind"),
+        std::tuple("3.5", "1", "of another kind"), std::tuple("-3", "1", "of another kind"),
+        std::tuple("4294967299", "1", "of another kind"), std::tuple("3", "-5", "of another kind")}) {
+    folder_.Write("surface.json", R"({"status": "completed", "frames": [{"frame": )" + std::string(number) +
+                                      R"(, "name": "3.png", "note": "", "neighbors": [)" + neighbors +
+                                      R"(]}, {"frame": 4, "name": "4.png", "note": "there is no map"}]})");
+    const auto surface = ReadSurfaceFolder(folder_.Path("."));
+    ASSERT_FALSE(surface.ok()) << number << " " << neighbors;
+    EXPECT_EQ(surface.status().code(), ErrorCode::kUnreadable);
+    EXPECT_THAT(surface.status().message(), HasSubstr(what));
   }
 }
 

@@ -265,6 +265,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongTracks{"Objects", "a.npy", TracksAs("|O", "3, 2, 2"), "holds Python objects"},
         WrongTracks{"CutArray", "a.npy", TracksAs("<f4", "4, 2, 2"), "is cut off"},
         WrongTracks{"AbsurdShape", "a.npy", TracksAs("<f4", "4294967296, 4294967296, 2"), "is damaged"},
+        WrongTracks{"NoFrames", "a.npy", NpyFile("<f4", "0, 2147483647, 2", {}), "have no frame"},
         WrongTracks{"NoVisibility", "a.npz", ZipFile({{"tracks.npy", Tracks()}}, ZipMethod::kStored),
                     "has no array visibility"},
         WrongTracks{"NoTracks", "a.npz", ZipFile({{"points.npy", Tracks()}}, ZipMethod::kStored),

@@ -14,6 +14,7 @@
 
 #include "pipeline/surface_neighbors.h"
 #include "pipeline/surface_writer.h"
+#include "pliant/base/folder_lock.h"
 #include "pliant/datasets/surface_folder.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"
@@ -115,6 +116,16 @@ TEST_F(SurfaceRunTest, AFrameWithFewPointsHasNoDepthAndSaysWhy) {
   EXPECT_EQ(result.status().code(), ErrorCode::kInsufficient);
   EXPECT_THAT(result.status().message(), HasSubstr("needs 12 points"));
   EXPECT_THAT(folder_.Read("surface/surface.json"), HasSubstr("needs 12 points"));
+}
+
+TEST_F(SurfaceRunTest, LeavesAFolderAloneThatAnotherOneWritesInto) {
+  WriteRun(folder_);
+  folder_.Write("surface/surface.json", "{}");
+  const auto held = FolderLock::Take(folder_.Path("surface"));
+  ASSERT_TRUE(held.ok());
+  const auto result = Make(WriteImages(19));
+  EXPECT_EQ(result.status().code(), ErrorCode::kUnwritable);
+  EXPECT_EQ(folder_.Read("surface/surface.json"), "{}");
 }
 
 TEST(SurfaceFileNames, AreTheImagesUnlessTwoWouldBeCalledTheSame) {

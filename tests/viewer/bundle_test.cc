@@ -32,6 +32,11 @@ TEST(WithoutPaths, LeavesOutFoldersAndNamesAndNothingElse) {
     EXPECT_EQ(WithoutPaths(kept), kept);
 }
 
+TEST(WithoutPaths, LeavesOutWhatIsTooLongToBeRead) {
+  EXPECT_EQ(WithoutPaths("a\n# " + std::string(1000000, '/') + "\nb /home/smith\n"), "a\n<long line>\nb <path>\n");
+  EXPECT_EQ(WithoutPaths(std::string(1000000, 'x')), "<long line>");
+}
+
 // The run of small_run.h, whose images are those of small_sequence.h.
 class BundleTest : public testing::Test {
  protected:
