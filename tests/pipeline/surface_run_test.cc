@@ -3,6 +3,7 @@
 
 #include "pliant/pipeline/surface_run.h"
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <utility>
@@ -120,6 +121,7 @@ TEST_F(SurfaceRunTest, AFrameWithFewPointsHasNoDepthAndSaysWhy) {
 
 TEST_F(SurfaceRunTest, LeavesAFolderAloneThatAnotherOneWritesInto) {
   WriteRun(folder_);
+  std::filesystem::create_directories(folder_.Path("surface"));
   folder_.Write("surface/surface.json", "{}");
   const auto held = FolderLock::Take(folder_.Path("surface"));
   ASSERT_TRUE(held.ok());
