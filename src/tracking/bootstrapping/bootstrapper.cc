@@ -410,6 +410,9 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
     if (step.map || !HasReference()) return step;
   }
   if (HasReference()) AttemptLast(&reference_, &step);
+  // All frames of the next one are the present one's too: where that cannot tell camera and scene apart it cannot
+  // either.
+  if (!step.ambiguity.empty()) reference_tracks_.Drop(&next_);
   if (next_.IsThere() && !step.map) AttemptLast(&next_, &step);
   if (step.map) return step;
   if (next_.provisional) PutAside(*std::exchange(next_.provisional, std::nullopt), &reference_.provisional);
