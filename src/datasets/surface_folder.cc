@@ -35,6 +35,8 @@ bool AreRight(const ComparedWindows& windows) {
 // It names a file in the folders of the surface, and no other.
 bool IsFileName(const std::string& name) { return !name.empty() && std::filesystem::path(name).filename() == name; }
 
+std::string StemOf(const std::string& image_name) { return std::filesystem::path(image_name).stem().string(); }
+
 // Throws as JSON's readers do where it is no frame's number.
 int FrameNumber(const nlohmann::json& json) {
   if (!json.is_number_integer() || json.get<std::int64_t>() < 0 ||
@@ -53,6 +55,18 @@ SurfaceFolder::Frame FrameOf(const nlohmann::json& json) {
 }
 
 }  // namespace
+
+SurfaceFileNames::SurfaceFileNames(const std::map<int, std::string>& images) : images_(images) {
+  for (const auto& [frame_idx, name] : images) ++images_of_stem_[StemOf(name)];
+}
+
+std::string SurfaceFileNames::Of(int frame_idx) const {
+  std::string number = native::FrameFileName(frame_idx);
+  const auto image = images_.find(frame_idx);
+  if (image == images_.end()) return number;
+  const std::string stem = StemOf(image->second);
+  return images_of_stem_.at(stem) == 1 ? stem + ".png" : stem + "_" + number;
+}
 
 Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
   const std::string summary = (path / surface::kSummaryFile).string();
@@ -73,11 +87,12 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
     folder.trajectory_checksum = json.value("trajectory_crc32", "");
     std::set<int> known;
     for (const auto& frame : json.at("frames")) {
-      if (const int frame_idx = FrameNumber(frame.at("frame")); !known.insert(frame_idx).second)
+      const int frame_idx = FrameNumber(frame.at("frame"));
+      if (!known.insert(frame_idx).second)
         return Status(ErrorCode::kUnreadable,
                       Quoted(summary) + " has frame " + std::to_string(frame_idx) + " more than once");
       if (!frame.at("note").get<std::string>().empty()) {
-        folder.frames_without_depth.push_back(FrameNumber(frame.at("frame")));
+        folder.frames_without_depth.push_back(frame_idx);
         continue;
       }
       folder.frames.push_back(FrameOf(frame));

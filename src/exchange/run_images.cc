@@ -54,9 +54,10 @@ Result<SurfaceFolder> ReadSurfaceOfRun(const std::string& path, const std::strin
     return mismatch("has images of " + SizeText(surface->camera.width(), surface->camera.height()) +
                     " pixels, and the run of " + SizeText(camera.width(), camera.height()));
   if (!IsSameCamera(surface->camera, camera)) return mismatch("has another camera than the run");
+  const SurfaceFileNames names(known.names);
   for (const SurfaceFolder::Frame& frame : surface->frames) {
     const auto name = known.names.find(frame.frame_idx);
-    if (name != known.names.end() && fs::path(name->second).stem() != fs::path(frame.file_name).stem())
+    if (name != known.names.end() && fs::path(names.Of(frame.frame_idx)).stem() != fs::path(frame.file_name).stem())
       return mismatch("calls frame " + std::to_string(frame.frame_idx) + " " + frame.file_name +
                       ", and the run calls it " + name->second);
   }

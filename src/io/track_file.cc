@@ -126,10 +126,10 @@ Result<TrackFile> ReadTrackCsv(const std::string& path) {
   while (reader->Next(&line)) {
     if (Bare(line).empty()) continue;
     const auto columns_here = static_cast<std::size_t>(std::ranges::count(line, ',')) + 1;
-    const auto fields = columns_here == count ? BareFields(line) : std::vector<std::string_view>();
-    if (fields.size() != count)
+    if (columns_here != count)
       return reader->Error("a row has " + std::to_string(count) + " columns, as the first line, this one has " +
                            std::to_string(columns_here) + (reader->ended() ? "" : "; the file is cut off"));
+    const auto fields = BareFields(line);
     TrackRow row;
     if (const std::string wrong = ParseTrackRow(fields, *columns, &row); !wrong.empty()) return reader->Error(wrong);
     if (!tracks[row.id].emplace(row.seen.frame_idx, row.seen).second)

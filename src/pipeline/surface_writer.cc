@@ -68,21 +68,7 @@ Status RemoveEarlierSurface(const fs::path& path) {
   return error ? Unwritable(path) : MeshWriter::RemoveEarlier(path);
 }
 
-std::string StemOf(const std::string& image_name) { return fs::path(image_name).stem().string(); }
-
 }  // namespace
-
-SurfaceFileNames::SurfaceFileNames(const std::map<int, std::string>& images) : images_(images) {
-  for (const auto& [frame_idx, name] : images) ++images_of_stem_[StemOf(name)];
-}
-
-std::string SurfaceFileNames::Of(int frame_idx) const {
-  std::string number = native::FrameFileName(frame_idx);
-  const auto image = images_.find(frame_idx);
-  if (image == images_.end()) return number;
-  const std::string stem = StemOf(image->second);
-  return images_of_stem_.at(stem) == 1 ? stem + ".png" : stem + "_" + number;
-}
 
 Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const SurfaceSource& source,
                                             const SurfaceRunOptions& options) {

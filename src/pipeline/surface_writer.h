@@ -5,7 +5,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,19 +30,6 @@ struct SurfaceSource {
   double largest_depth = 0;              // that can be written, map units
   std::optional<bool> metric = {};       // RunDescription::metric
   std::string trajectory_checksum = {};  // TrajectoryChecksum of the run
-};
-
-// What the files of frames are called: as their images, with the ending .png, and with the frame's number where another
-// image of the run would be called the same (a.jpg and a.png, left/1.png and right/1.png).
-class SurfaceFileNames {
- public:
-  // The names of the run's images by frame. They must outlive this.
-  explicit SurfaceFileNames(const std::map<int, std::string>& images);
-  std::string Of(int frame_idx) const;
-
- private:
-  const std::map<int, std::string>& images_;
-  std::map<std::string, int> images_of_stem_;
 };
 
 class SurfaceWriter {

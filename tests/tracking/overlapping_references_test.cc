@@ -96,12 +96,7 @@ class OverlappingReferences : public TrackerFromImages {
       for (FrameReport& report : TrackerFromImages::Show(i, i, &tracker)) reports_.push_back(std::move(report));
       back_ = tracker.TakeGoesBackTo();
     }
-    if (!back_) {
-      tracker.EndSequence();
-      back_ = tracker.TakeGoesBackTo();
-    }
-    for (FrameReport& report : tracker.Finish()) reports_.push_back(std::move(report));
-    for (int k = 0; k < std::ssize(reports_); ++k) EXPECT_EQ(reports_[static_cast<std::size_t>(k)].frame_idx, k);
+    back_ = End(back_, &tracker, &reports_);
   }
   // The first map's reference and last frame.
   std::optional<std::pair<int, int>> MapFrames() const {

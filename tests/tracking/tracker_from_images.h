@@ -5,8 +5,10 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -50,6 +52,18 @@ class TrackerFromImages : public testing::Test {
   static std::vector<FrameReport> Show(int image_idx, int frame_idx, Tracker* tracker) {
     return tracker->Process(PrepareFrame(frame_idx, NameOf(frame_idx), frame_idx / 30.0,
                                          (*images_)[static_cast<std::size_t>(image_idx)], {}, {}));
+  }
+
+  // The sequence ends, unless the tracker has gone back to a frame. Appends the reports that were held back, and
+  // returns the frame that it went back to.
+  static std::optional<int> End(std::optional<int> back, Tracker* tracker, std::vector<FrameReport>* reports) {
+    if (!back) {
+      tracker->EndSequence();
+      back = tracker->TakeGoesBackTo();
+    }
+    for (FrameReport& report : tracker->Finish()) reports->push_back(std::move(report));
+    for (int k = 0; k < std::ssize(*reports); ++k) EXPECT_EQ((*reports)[static_cast<std::size_t>(k)].frame_idx, k);
+    return back;
   }
 
   // All images, from the depth of the first one. `hide` (frame, mask) sets to 0 what a frame does not show.

@@ -85,12 +85,7 @@ class WeakMaps : public TrackerFromImages {
         reports_.push_back(std::move(report));
       back_ = tracker.TakeGoesBackTo();
     }
-    if (!back_) {
-      tracker.EndSequence();
-      back_ = tracker.TakeGoesBackTo();
-    }
-    for (FrameReport& report : tracker.Finish()) reports_.push_back(std::move(report));
-    for (int k = 0; k < std::ssize(reports_); ++k) EXPECT_EQ(reports_[static_cast<std::size_t>(k)].frame_idx, k);
+    back_ = End(back_, &tracker, &reports_);
     EXPECT_EQ(std::ssize(reports_), shown_);
   }
   // The reference of the map that is there in the end; -1: there is none.

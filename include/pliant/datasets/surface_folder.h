@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,5 +67,18 @@ Result<SurfaceDepth> ReadSurfaceDepth(const SurfaceFolder& folder, const Surface
 // with kUnreadable.
 Result<std::vector<Eigen::Vector3d>> ReadSurfaceVertices(const SurfaceFolder& folder,
                                                          const SurfaceFolder::Frame& frame);
+
+// What the files of frames are called: as their images, with the ending .png, and with the frame's number where another
+// image of the run would be called the same (a.jpg and a.png, left/1.png and right/1.png).
+class SurfaceFileNames {
+ public:
+  // The names of the run's images by frame. They must outlive this.
+  explicit SurfaceFileNames(const std::map<int, std::string>& images);
+  std::string Of(int frame_idx) const;
+
+ private:
+  const std::map<int, std::string>& images_;
+  std::map<std::string, int> images_of_stem_;
+};
 
 }  // namespace pliant

@@ -151,7 +151,7 @@ void Bootstrapper::TryNextReference(const PreparedFrame& frame, StageTimes* time
   BootstrapStep next{.tracked = next_.Points()};
   {
     const StageTimer timer(times, Stage::kInitialize);
-    TakeAnswer(AskInitializers(QuestionOf(next_), frame), &next_, &next);
+    TakeAnswer(AskInitializers(next_.frames, QuestionOf(next_), frame), &next_, &next);
   }
   if (next.map) {
     next.losses.Add(step->losses);
@@ -169,13 +169,15 @@ std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame
     Question question = QuestionOf(reference_);
     if (reference_.frames.size() % kAskAlternativeEvery == 0) question.alternative = AlternativeToAsk();
     if (reference_.frames.size() == 1 && frame.known_depth_mm) question.reference_depth_mm = frame.known_depth_mm();
-    return AskInitializers(question, frame);
+    return AskInitializers(reference_.frames, question, frame);
   }
   const auto step = static_cast<int>(reference_.frames.size());
   const WorkPlace place = threads_ > 1 ? WorkPlace::kBeside : WorkPlace::kHere;
   if (answers_.size() < static_cast<std::size_t>(kMaxLate * handover_frames_))
     answers_.Ask(step + handover_frames_, place,
-                 [this, frame, question = QuestionOf(reference_)] { return AskInitializers(question, frame); });
+                 [this, frame, frames = reference_.frames, question = QuestionOf(reference_)] {
+                   return AskInitializers(frames, question, frame);
+                 });
   if (options_.handover_waits == Switch::kOn) return answers_.Take(step);
   auto answer = answers_.TakeIfThere(step);
   // Where they are late more than one may be there. What an attempt says that decides nothing, the next one says.
@@ -188,22 +190,21 @@ std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame
 }
 
 Bootstrapper::Question Bootstrapper::QuestionOf(const Reference& reference) const {
-  return {.frames = reference.frames,
-          .known_depths = reference.known_depths,
+  return {.known_depths = reference.known_depths,
           .camera_may_stand_still = reference.camera_may_stand_still,
           .was_ambiguous = was_ambiguous_};
 }
 
 // Beside tracking it reads only what does not change.
-Bootstrapper::Answer Bootstrapper::AskInitializers(const Question& question, const PreparedFrame& last) const {
-  Answer answer{.frames = question.frames.size(), .last = last};
-  answer.outcome = initializer_->Try({camera_, question.frames, question.reference_depth_mm, question.moment, threads_,
-                                      question.known_depths, photometric_, question.camera_may_stand_still,
-                                      question.was_ambiguous, camera_origin_});
+Bootstrapper::Answer Bootstrapper::AskInitializers(const std::vector<InitFrame>& frames, const Question& question,
+                                                   const PreparedFrame& last) const {
+  Answer answer{.frames = frames.size(), .last = last};
+  answer.outcome =
+      initializer_->Try({camera_, frames, question.reference_depth_mm, question.moment, threads_, question.known_depths,
+                         photometric_, question.camera_may_stand_still, question.was_ambiguous, camera_origin_});
   const bool is_settled = answer.outcome.decision == InitDecision::kMap || answer.outcome.ambiguous;
   if (question.alternative != nullptr && !is_settled)
-    answer.alternative =
-        question.alternative->Try({camera_, question.frames, {}, question.moment, threads_, {}, photometric_});
+    answer.alternative = question.alternative->Try({camera_, frames, {}, question.moment, threads_, {}, photometric_});
   return answer;
 }
 
@@ -426,7 +427,7 @@ void Bootstrapper::AttemptLast(Reference* reference, BootstrapStep* step) {
   Question question = QuestionOf(*reference);
   question.moment = InitMoment::kLastFrame;
   if (!reference->provisional && !weak_.IsThere()) question.alternative = AlternativeToAsk();
-  Answer answer = AskInitializers(question, last);
+  Answer answer = AskInitializers(reference->frames, question, last);
   // What a reference of the last few images lacks says less than why one that lasted longer was given up.
   const bool says_less = reference->frames.size() < given_up_.frames && !answer.outcome.ambiguous;
   if (!says_less) given_up_ = {reference->frames.size(), answer.outcome.reason};

@@ -102,9 +102,8 @@ class Bootstrapper {
     void Serialize(StateArchive& archive);
   };
 
-  // What the initializers are asked of a reference.
+  // What the initializers are asked of a reference, besides its frames.
   struct Question {
-    std::vector<InitFrame> frames;
     std::vector<double> known_depths;
     bool camera_may_stand_still = false;
     bool was_ambiguous = false;
@@ -114,7 +113,8 @@ class Bootstrapper {
   };
 
   Question QuestionOf(const Reference& reference) const;
-  Answer AskInitializers(const Question& question, const PreparedFrame& last) const;
+  Answer AskInitializers(const std::vector<InitFrame>& frames, const Question& question,
+                         const PreparedFrame& last) const;
   std::shared_ptr<const Initializer> AlternativeToAsk() const;
   std::optional<Answer> NextAnswer(const PreparedFrame& frame, StageTimes* times);
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
