@@ -158,8 +158,8 @@ void OptionTable::Add(std::string name, int* value, std::string unit, std::strin
 
 void OptionTable::Add(std::string name, double* value, std::string unit, std::string why, double low, double high) {
   const std::string full_name = group_ + "." + name;
-  const std::string range =
-      FormatDouble(low) + " to " + FormatDouble(high) + (unit == "-" || unit == "1" ? "" : " " + unit);
+  const bool has_unit = !unit.empty() && unit != "-" && unit != "1";
+  const std::string range = FormatDouble(low) + " to " + FormatDouble(high) + (has_unit ? " " + unit : "");
   AddField({std::move(name), std::move(unit), std::move(why), [value] { return FormatDouble(*value); },
             [value, full_name, range, low, high](std::string_view text) {
               double parsed = 0;

@@ -4,14 +4,15 @@
 // Frames as a command line names them.
 #pragma once
 
-#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "pliant/base/status.h"
+
 namespace pliant::cli {
 
-// "10,20,30-35": numbers and ranges, both ends included, with commas between them; nothing where it is anything else.
-// Empty text is no frame.
-std::optional<std::vector<int>> ParseFrameList(std::string_view text);
+// The value of `option`, "10,20,30-35": numbers and ranges, both ends included, with commas between them. Empty text is
+// no frame. Fails with kInvalidArgument where it is anything else.
+Result<std::vector<int>> ParseFrameList(std::string_view option, std::string_view text);
 
 }  // namespace pliant::cli

@@ -62,8 +62,8 @@ std::string CheckArguments(const ReportArguments& arguments, std::vector<int>* f
   if (arguments.bundle_images && !arguments.bundle) return "--bundle_images adds images to a bundle; give --bundle too";
   if (arguments.bundle)
     return arguments.view.run_paths.size() > 1 ? "--bundle is of one run; give one --run" : std::string();
-  const auto frames = ParseFrameList(arguments.figure);
-  if (!frames) return "--figure is '" + arguments.figure + "'; give frame numbers with commas between them";
+  const auto frames = ParseFrameList("--figure", arguments.figure);
+  if (!frames.ok()) return frames.status().message();
   *frames_idx = *frames;
   const ViewOutput output = !arguments.figure.empty() ? ViewOutput::kFigure
                             : arguments.video         ? ViewOutput::kFilm

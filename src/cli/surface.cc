@@ -55,11 +55,8 @@ int SurfaceCommand(std::span<const std::string> args) {
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
-  const auto chosen = ParseFrameList(frames);
-  if (!chosen)
-    return line.UsageError(
-        "--frames is '" + frames +
-        "'; give frame numbers with commas between them, or 10-20 for all from 10 to 20, the smaller one first");
+  const auto chosen = ParseFrameList("--frames", frames);
+  if (!chosen.ok()) return line.UsageError(chosen.status().message());
   request.frames = *chosen;
   if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kSurface)) return *exit;
   request.output_path = output.path;

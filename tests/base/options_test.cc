@@ -51,6 +51,18 @@ TEST(Options, EveryFieldPrintsWhatItReads) {
   EXPECT_EQ(options.weight, 2.5);
 }
 
+TEST(Options, ARangeIsPrintedWithItsUnitWhereItHasOne) {
+  double share = 0.5;
+  for (const auto& [unit, text] :
+       {std::pair{"px", "0.1 to 10 px"}, {"1", "0.1 to 10"}, {"-", "0.1 to 10"}, {"", "0.1 to 10"}}) {
+    OptionTable table;
+    table.BeginGroup("Cake", "to share");
+    table.Add("share", &share, unit, "a part", 0.1, 10.0);
+    EXPECT_EQ(table.Set("Cake.share", "0.01").message(),
+              "Cake.share is '0.01'; give a number from " + std::string(text));
+  }
+}
+
 TEST(Options, RefusesAndKeepsTheOldValue) {
   BasketOptions options;
   OptionTable table;

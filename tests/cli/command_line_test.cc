@@ -312,10 +312,14 @@ TEST(CommandLine, AProgramThatDoesOneThingSpeaksUnderItsOwnName) {
 
 TEST(FrameList, HasNumbersAndRanges) {
   using testing::ElementsAre;
-  EXPECT_THAT(*ParseFrameList("10,3,20-23"), ElementsAre(10, 3, 20, 21, 22, 23));
-  EXPECT_TRUE(ParseFrameList("")->empty());
-  for (const char* wrong : {"a", "1,,2", "5-3", "-1", "1-2-3", "1.5", "1-", "0-99999999"})
-    EXPECT_FALSE(ParseFrameList(wrong)) << wrong;
+  EXPECT_THAT(*ParseFrameList("--frames", "10,3,20-23"), ElementsAre(10, 3, 20, 21, 22, 23));
+  EXPECT_TRUE(ParseFrameList("--frames", "")->empty());
+  for (const std::string wrong : {"a", "1,,2", "-1", "1-2-3", "1.5", "1-", "0-99999999", "99999999-0"})
+    EXPECT_EQ(
+        ParseFrameList("--frames", wrong).status().message(),
+        "--frames is '" + wrong + "'; give frame numbers with commas between them, or 10-20 for all from 10 to 20");
+  EXPECT_EQ(ParseFrameList("--figure", "1,10-5").status().message(),
+            "--figure is '1,10-5'; a range begins with the smaller number: give 5-10");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ namespace pliant {
 // One option. `get` prints the present value so that `set` reads the same value back.
 struct OptionField {
   std::string name;  // "Group.option"
-  std::string unit;  // "px", "mm", "-" ...; for a choice its names, "a | b"
+  std::string unit;  // "px", "mm" ..., "-", "1" or empty where there is none; for a choice its names, "a | b"
   std::string why;   // one line
   std::function<std::string()> get;
   std::function<Status(std::string_view)> set;  // refuses what cannot be read or is out of range
