@@ -54,6 +54,14 @@ SurfaceFolder::Frame FrameOf(const nlohmann::json& json) {
   return frame;
 }
 
+// The file that two of the frames have; empty: each has its own.
+std::string SharedFileName(const std::vector<SurfaceFolder::Frame>& frames) {
+  std::set<std::string> names;
+  for (const SurfaceFolder::Frame& frame : frames)
+    if (!names.insert(frame.file_name).second) return frame.file_name;
+  return {};
+}
+
 }  // namespace
 
 SurfaceFileNames::SurfaceFileNames(const std::map<int, std::string>& images) : images_(images) {
@@ -61,11 +69,13 @@ SurfaceFileNames::SurfaceFileNames(const std::map<int, std::string>& images) : i
 }
 
 std::string SurfaceFileNames::Of(int frame_idx) const {
-  std::string number = native::FrameFileName(frame_idx);
+  const std::string number = native::FrameFileName(frame_idx);
   const auto image = images_.find(frame_idx);
   if (image == images_.end()) return number;
-  const std::string stem = StemOf(image->second);
-  return images_of_stem_.at(stem) == 1 ? stem + ".png" : stem + "_" + number;
+  std::string stem = StemOf(image->second);
+  if (images_of_stem_.at(stem) > 1)  // stems with different numbers at their ends differ
+    while (images_of_stem_.contains(stem)) stem += "_" + StemOf(number);
+  return stem + ".png";
 }
 
 Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
@@ -101,6 +111,10 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
                                                   Quoted(folder.frames.back().file_name) +
                                                   ", which is not a file's name");
     }
+    if (const std::string shared = SharedFileName(folder.frames); !shared.empty())
+      return Status(ErrorCode::kUnreadable, Quoted(summary) + " gives two frames one file, " + Quoted(shared) +
+                                                ", which holds the depth of one of them; make the surface again with "
+                                                "pliant surface");
     if (json.contains("windows")) {
       const auto& windows = json.at("windows");
       folder.windows = {windows.at("image_width").get<int>(), windows.at("side").get<int>(),

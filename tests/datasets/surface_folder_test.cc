@@ -59,6 +59,14 @@ TEST_F(SurfaceFolderFile, NamesNoFileElsewhere) {
   }
 }
 
+TEST_F(SurfaceFolderFile, HasAFileOfItsOwnForEveryFrame) {
+  folder_.Write("surface.json", R"({"status": "completed", "frames": [
+    {"frame": 3, "name": "a.png", "note": ""}, {"frame": 4, "name": "a.png", "note": ""}]})");
+  const auto shared = ReadSurfaceFolder(folder_.Path("."));
+  EXPECT_EQ(shared.status().code(), ErrorCode::kUnreadable);
+  EXPECT_THAT(shared.status().message(), HasSubstr("gives two frames one file, 'a.png'"));
+}
+
 TEST_F(SurfaceFolderFile, ComparedNoWindowsThatCannotBe) {
   for (const char* windows : {R"({"image_width": 0, "side": 21, "smoothing_px": 1, "noise_levels": 2})",
                               R"({"image_width": 320, "side": 0, "smoothing_px": 1, "noise_levels": 2})",

@@ -139,6 +139,14 @@ TEST(SurfaceFileNames, AreTheImagesUnlessTwoWouldBeCalledTheSame) {
   EXPECT_EQ(names.Of(7), "000007.png");
 }
 
+TEST(SurfaceFileNames, AreNoneOfAnotherImageThatEndsInANumber) {
+  const std::map<int, std::string> images = {{0, "a.jpg"}, {1, "a.png"}, {2, "a_000000.png"}};
+  const SurfaceFileNames names(images);
+  EXPECT_EQ(names.Of(0), "a_000000_000000.png");
+  EXPECT_EQ(names.Of(1), "a_000001.png");
+  EXPECT_EQ(names.Of(2), "a_000000.png");
+}
+
 TEST_F(SurfaceRunTest, SaysWhetherAMapUnitIsAMillimeter) {
   const std::string images = WriteImages(19);
   for (const auto& [metric, text] : {std::pair(true, "\"metric\": true"), std::pair(false, "\"metric\": false")}) {
@@ -153,6 +161,24 @@ TEST_F(SurfaceRunTest, SaysWhetherAMapUnitIsAMillimeter) {
     EXPECT_THAT(folder_.Read("surface/camera.yaml"), HasSubstr(metric ? "# mm per step" : "# map units per step"));
     EXPECT_EQ(folder_.Read("surface/camera.yaml").find("unit: mm") != std::string::npos, metric);
   }
+}
+
+TEST_F(SurfaceRunTest, ImagesOfOneNameHaveFilesOfTheirOwnWhateverIsChosen) {
+  const std::map<int, std::string> names = {{10, "a.jpg"}, {11, "a.n.png"}, {12, "a.png"}};
+  auto writer =
+      RunWriter::Create(folder_.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {});
+  ASSERT_TRUE(writer.ok()) << writer.status().message();
+  for (const int frame : {0, 1}) {
+    FrameReport report = Report(frame);
+    report.name = names.at(report.frame_idx);
+    ASSERT_TRUE(writer->Write(report).ok());
+  }
+  ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+  const std::string images = WriteImages(13);
+  for (const auto& [frame_idx, name] : names)
+    std::filesystem::rename(images + "/" + FileName(frame_idx), images + "/" + name);
+  EXPECT_FALSE(Make(images, {12}).ok());  // gray images have no depth
+  EXPECT_THAT(folder_.Read("surface/surface.json"), HasSubstr("\"name\": \"a_000012.png\""));
 }
 
 TEST_F(SurfaceRunTest, KnowsWhenTheRunIsReplaced) {

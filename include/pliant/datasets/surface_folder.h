@@ -55,7 +55,7 @@ struct SurfaceDepth {
   void KeepMeasured();
 };
 
-// Fails with kNotFound or kUnreadable.
+// Fails with kNotFound or kUnreadable, also where two frames have one file.
 Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path);
 // Fails with kMismatch where the surface was made of another run than is in this folder now: of one elsewhere that this
 // is no copy of, or of one that was replaced. A surface of an earlier version is only known to be of another run where
