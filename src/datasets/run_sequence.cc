@@ -58,6 +58,16 @@ Result<Camera> ReadGivenCamera(const std::string& path, const Camera& of_run) {
   return ReadCamera(path, options);
 }
 
+bool IsSamePath(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return a == b || fs::equivalent(a, b, error);
+}
+
+Status OtherCamera(const Camera& of_run, const std::string& what, const Camera& other, const std::string& advice) {
+  return {ErrorCode::kMismatch, "the run was tracked with " + CameraText(of_run) + ", and " + what + " is " +
+                                    CameraText(other) + "; " + advice};
+}
+
 // A run's points and poses are those of the camera that it was tracked with.
 Status CheckGivenCamera(const SequenceRequest& request, const Camera& of_run) {
   if (request.camera_path.empty()) return Status::Ok();
@@ -66,9 +76,8 @@ Status CheckGivenCamera(const SequenceRequest& request, const Camera& of_run) {
   if (const auto sequence = OpenSequence(request); sequence.ok()) given = (*sequence)->camera();
   if (!given.ok()) return given.status();
   if (IsSameCamera(*given, of_run)) return Status::Ok();
-  return {ErrorCode::kMismatch, "the run was tracked with " + CameraText(of_run) + ", and --camera " +
-                                    Quoted(request.camera_path.string()) + " is " + CameraText(*given) +
-                                    "; track the images again to use that one"};
+  return OtherCamera(of_run, "--camera " + Quoted(request.camera_path.string()), *given,
+                     "track the images again to use that one");
 }
 
 }  // namespace
@@ -86,10 +95,9 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
   request.end = range.end;
   request.stride = summary->description.joined_from.empty() ? range.stride : 1;
   request.spare_camera_path = CameraOfRun(run_path, summary->description);
-  std::error_code error;
-  const bool same = request.image_path == input || std::filesystem::equivalent(request.image_path, input, error);
-  if (!same) return request;
+  if (!IsSamePath(request.image_path, input)) return request;
   const std::filesystem::path mask = summary->description.mask;
+  std::error_code error;
   if (std::filesystem::exists(mask, error)) request.mask_path = mask;
   return request;
 }
@@ -110,6 +118,18 @@ Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest&
   return Status(ErrorCode::kNotFound, Quoted(run_path) +
                                           " has no sparse/ to take the camera and the images' names "
                                           "from; name its sequence with --sequence");
+}
+
+Status CheckCameraOfImages(const SequenceRequest& request, const Run& run, const Camera& of_run,
+                           const Camera& of_images) {
+  if (!request.camera_path.empty() || IsSameCamera(of_images, of_run)) return Status::Ok();
+  if (of_images.width() != of_run.width() || of_images.height() != of_run.height()) return Status::Ok();
+  if (run.summary && IsSamePath(request.image_path, run.summary->description.input) &&
+      (!run.summary->description.camera.empty() || !run.summary->description.metric))
+    return Status::Ok();
+  return OtherCamera(of_run, "the calibration that belongs to the images " + Quoted(request.image_path.string()),
+                     of_images,
+                     "give the run's with --camera if the images are those that were tracked, or track them again");
 }
 
 Status CheckMasksOfRun(const SequenceRequest& request, const Run& run) {

@@ -24,6 +24,9 @@ namespace fs = std::filesystem;
 Result<RunImages> RunImages::Open(const RunSource& source) {
   auto sequence = OpenImagesOfRun(source.run_path, source.images);
   if (!sequence.ok()) return sequence.status();
+  if (Status status = CheckCameraOfImages(source.images, *source.run, source.camera, (*sequence)->camera());
+      !status.ok())
+    return status;
   if (Status status = CheckMasksOfRun(source.images, *source.run); !status.ok()) return status;
   return RunImages(source, *std::move(sequence));
 }

@@ -10,6 +10,7 @@
 
 #include "exchange/run_images.h"
 #include "pliant/base/text.h"
+#include "pliant/datasets/open_sequence.h"
 #include "pliant/datasets/run_sequence.h"
 #include "pliant/io/run_map.h"
 
@@ -83,6 +84,11 @@ Result<std::vector<RunSource>> ReadRunSources(const ExportRequest& request, int 
   if (!request.mask_path.empty()) images.mask_path = request.mask_path;
   const auto known = KnownMapOfRun(request.run_path, images, *run);
   if (!known.ok()) return known.status();
+  // Also of formats that hold no images; images that cannot be read are an error where they are needed.
+  if (!request.sequence_path.empty())
+    if (const auto sequence = OpenSequence(images); sequence.ok())
+      if (Status status = CheckCameraOfImages(images, *run, *known->camera, (*sequence)->camera()); !status.ok())
+        return status;
   RunSource empty{request.run_path, std::make_shared<const Run>(*run), *known->camera, images, {}, {}, {}, 0, {}};
   if (!request.surface_path.empty()) {
     auto surface = ReadSurfaceOfRun(request.surface_path, request.run_path, *known);

@@ -387,6 +387,8 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (!sequence.ok()) return sequence.status();
   const auto known = KnownMapOfRun(request.run_path, source, *run);
   if (!known.ok()) return known.status();
+  if (Status status = CheckCameraOfImages(source, *run, *known->camera, (*sequence)->camera()); !status.ok())
+    return status;
   const auto frames = ReadPosedFrames(request.run_path, *run);
   if (!frames.ok()) return frames.status();
   const Plan plan = MakePlan(*frames, request, options);

@@ -411,6 +411,23 @@ TEST(NeuralExport, SaysThatAnImageHasAnotherSize) {
               HasSubstr("image 10.png has 320x240 pixels, and the run's camera has 640x480"));
 }
 
+TEST(NeuralExport, RefusesImagesWithAnotherCalibration) {
+  const TestFolder folder;
+  WriteNeuralRun(folder, TestCamera());
+  std::filesystem::rename(folder.Path("sequence"), folder.Path("moved"));
+  ExportRequest request;
+  request.sequence_path = folder.Path("moved");
+  ASSERT_TRUE(
+      WriteCameraFile(folder.Path("moved/camera.yaml"), {.camera = NeuralCamera("PINHOLE", {600, 600, 319.5, 239.5})})
+          .ok());
+  for (const char* format : {"nerfstudio", "tum"})
+    EXPECT_THAT(ExportError(folder, format, ErrorCode::kMismatch, request),
+                HasSubstr("is PINHOLE of 640x480 (600 600 319.5 239.5)"))
+        << format;
+  ASSERT_TRUE(WriteCameraFile(folder.Path("moved/camera.yaml"), {.camera = TestCamera()}).ok());
+  EXPECT_TRUE(ExportNeural(folder, "nerfstudio", request).ok());
+}
+
 TEST(NeuralExport, RefusesASurfaceThatIsNotTheRuns) {
   const TestFolder folder;
   WriteNeuralRun(folder, TestCamera());

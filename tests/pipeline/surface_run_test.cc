@@ -28,10 +28,12 @@ using testing::HasSubstr;
 
 class SurfaceRunTest : public testing::Test {
  protected:
-  Result<SurfaceSummary> Make(const std::string& sequence, std::vector<int> frames = {}) const {
+  Result<SurfaceSummary> Make(const std::string& sequence, std::vector<int> frames = {},
+                              const std::string& camera = {}) const {
     SurfaceRequest request;
     request.run_path = folder_.Path("run");
     request.sequence_path = sequence;
+    request.camera_path = camera;
     request.output_path = folder_.Path("surface");
     request.frames = std::move(frames);
     return MakeSurface(request, {}, {});
@@ -109,6 +111,38 @@ TEST_F(SurfaceRunTest, ImagesOfOtherNamesAreOthers) {
   const auto result = Make(images);
   EXPECT_EQ(result.status().code(), ErrorCode::kMismatch);
   EXPECT_THAT(result.status().message(), HasSubstr("frame 12 of the run is image 12.png, and here it is 12b.png"));
+}
+
+TEST_F(SurfaceRunTest, RefusesImagesWithAnotherCalibration) {
+  WriteRun(folder_);
+  const std::string images = WriteImages(19);
+  const std::string head = "model: PINHOLE\nwidth: 640\nheight: 480\nfps: 25\n";
+  folder_.Write("images/camera.yaml", head + "params: [600, 600, 319.5, 239.5]\n");
+  const auto other = Make(images);
+  EXPECT_EQ(other.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(other.status().message(),
+              HasSubstr("the run was tracked with PINHOLE of 640x480 (500 500 319.5 239.5), and the calibration that"));
+  EXPECT_THAT(other.status().message(), HasSubstr("is PINHOLE of 640x480 (600 600 319.5 239.5)"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("surface")));
+
+  const std::string of_run = folder_.Write("run.yaml", head + "params: [500, 500, 319.5, 239.5]\n");
+  EXPECT_THAT(Make(images, {}, of_run).status().message(), HasSubstr("needs 12 points"));
+}
+
+// Where the images were not moved, their own calibration may be another one than was used.
+TEST_F(SurfaceRunTest, AnUnusedCalibrationBesideTheRunsOwnImagesIsIgnored) {
+  const std::string images = WriteImages(19);
+  folder_.Write("images/camera.yaml",
+                "model: PINHOLE\nwidth: 640\nheight: 480\nparams: [600, 600, 319.5, 239.5]\nfps: 25\n");
+  for (const std::string used : {"elsewhere.yaml", ""}) {
+    RunDescription description{"0.1.0", {"pliant"}, 7, images, used};
+    description.metric = false;
+    auto writer = RunWriter::Create(folder_.Path("run"), TestCamera(), description, "Track:\n", {});
+    ASSERT_TRUE(writer.ok()) << writer.status().message();
+    for (int frame = 0; frame < kRunFrames; ++frame) ASSERT_TRUE(writer->Write(Report(frame)).ok());
+    ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+    EXPECT_EQ(Make("").status().code(), used.empty() ? ErrorCode::kMismatch : ErrorCode::kInsufficient) << used;
+  }
 }
 
 TEST_F(SurfaceRunTest, AFrameWithFewPointsHasNoDepthAndSaysWhy) {

@@ -30,6 +30,12 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
 // one than that of sparse/.
 Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest& sequence, const Run& run);
 
+// Fails with kMismatch where no calibration was given and the images have another one of the same size, `of_images`,
+// than the run was tracked with. The images that run.json names may have one that was not used: where it names another
+// one, or does not say whether the run is metric, as those of other programs, which have their own.
+Status CheckCameraOfImages(const SequenceRequest& request, const Run& run, const Camera& of_run,
+                           const Camera& of_images);
+
 // Fails with kNotFound where the run was tracked with masks and `request` names none: without them instruments would be
 // taken for the scene.
 Status CheckMasksOfRun(const SequenceRequest& request, const Run& run);
