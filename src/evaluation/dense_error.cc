@@ -129,15 +129,19 @@ void AddFigures(const DepthFigures& figures, DepthFigures* sum) {
   }
 }
 
-// Of no frames: zeros.
 DepthFigures MeanFigures(DepthFigures sum, std::ptrdiff_t frames) {
-  const double count = std::max(1.0, static_cast<double>(frames));
+  const auto count = static_cast<double>(frames);
   for (double* value : {&sum.abs_rel, &sum.sq_rel_mm, &sum.rmse_mm, &sum.rmse_log}) *value /= count;
   for (std::size_t k = 0; k < 3; ++k) {
     sum.below[k] /= count;
     sum.within_mm[k] /= count;
   }
   return sum;
+}
+
+// Of those frames that have such pixels.
+std::optional<DepthFigures> MeanOfSome(const DepthFigures& sum, std::ptrdiff_t frames) {
+  return frames > 0 ? std::optional(MeanFigures(sum, frames)) : std::nullopt;
 }
 
 // Of a frame, before its pixels are read again: all frames' pixels at once would be gigabytes.
@@ -195,8 +199,8 @@ class DenseErrorSum {
   void Add(const Pixels& pixels, const FrameScale& scale) {
     AddDepths(pixels, scale);
     AddFilled(pixels, scale.scale);
-    AddMesh(pixels, scale.scale, /*with_depth=*/true, &error_.mesh);
-    AddMesh(pixels, scale.scale, /*with_depth=*/false, &error_.mesh_alone);
+    AddMesh(pixels, scale.scale, /*with_depth=*/true, &mesh_);
+    AddMesh(pixels, scale.scale, /*with_depth=*/false, &mesh_alone_);
     vertices_ += static_cast<double>(pixels.vertex_truth_mm.size());
     vertices_alone_ += static_cast<double>(pixels.Vertices(false));
   }
@@ -206,16 +210,16 @@ class DenseErrorSum {
     for (DepthFigures* figures : {&error_.estimate, &error_.certain_half, &error_.null})
       *figures = MeanFigures(*figures, std::ssize(frames_));
     error_.interpolation =
-        MeanFigures(error_.interpolation,
-                    std::ranges::count_if(frames_, [](const FrameScale& frame) { return frame.interpolation > 0; }));
-    error_.filled = MeanFigures(error_.filled, CountOf(frames_, &FrameScale::has_filled));
-    error_.mesh = MeanFigures(error_.mesh, CountOf(frames_, &FrameScale::has_vertices));
-    error_.mesh_alone = MeanFigures(error_.mesh_alone, CountOf(frames_, &FrameScale::has_vertices_alone));
+        MeanOfSome(interpolation_,
+                   std::ranges::count_if(frames_, [](const FrameScale& frame) { return frame.interpolation > 0; }));
+    error_.filled = MeanOfSome(filled_, CountOf(frames_, &FrameScale::has_filled));
+    error_.mesh = MeanOfSome(mesh_, CountOf(frames_, &FrameScale::has_vertices));
+    error_.mesh_alone = MeanOfSome(mesh_alone_, CountOf(frames_, &FrameScale::has_vertices_alone));
     for (double* share : {&error_.within_1_sigma, &error_.within_2_sigma, &error_.filled_share}) *share /= frames;
     error_.known_share /= all_frames_;
     for (double& share : error_.complete_mm) share /= all_frames_;
     error_.mesh_vertices = vertices_ / frames;
-    error_.mesh_alone_share = vertices_ > 0.0 ? vertices_alone_ / vertices_ : 0.0;
+    if (vertices_ > 0.0) error_.mesh_alone_share = vertices_alone_ / vertices_;
     return error_;
   }
 
@@ -227,6 +231,10 @@ class DenseErrorSum {
   const std::vector<FrameScale>& frames_;
   double all_frames_;
   DenseError error_;
+  DepthFigures interpolation_;  // sums
+  DepthFigures filled_;
+  DepthFigures mesh_;
+  DepthFigures mesh_alone_;
   double vertices_ = 0.0;
   double vertices_alone_ = 0.0;
 };
@@ -243,7 +251,7 @@ void DenseErrorSum::AddMesh(const Pixels& pixels, double scale, bool with_depth,
 void DenseErrorSum::AddFilled(const Pixels& pixels, double scale) {
   if (pixels.filled_truth_mm.empty()) return;
   const auto estimate = [&](std::size_t i) { return scale * pixels.filled_estimate[i]; };
-  AddFigures(FiguresOf(pixels.filled_truth_mm, estimate, {}), &error_.filled);
+  AddFigures(FiguresOf(pixels.filled_truth_mm, estimate, {}), &filled_);
   error_.filled_share += static_cast<double>(pixels.filled_truth_mm.size()) / pixels.with_truth;
 }
 
@@ -271,7 +279,7 @@ void DenseErrorSum::AddDepths(const Pixels& pixels, const FrameScale& scale) {
   AddFigures(FiguresOf(truth, [&](std::size_t) { return constant; }, {}), &error_.null);
   if (pixels.interpolation.empty()) return;
   const auto interpolated = [&](std::size_t i) { return scale.interpolation * pixels.interpolation[i]; };
-  AddFigures(FiguresOf(truth, interpolated, {}), &error_.interpolation);
+  AddFigures(FiguresOf(truth, interpolated, {}), &interpolation_);
 }
 
 // Nothing: the frame has no true depth. Without pixels: none has both depths.

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <optional>
+
 #include <nlohmann/json.hpp>
 
 #include "pliant/evaluation/report.h"
@@ -91,10 +93,10 @@ Json ToJson(const DepthFigures& f) {
           {"within_5_mm", f.within_mm[2]}};
 }
 
+// Null: there was nothing to measure.
+Json OrNull(const std::optional<DepthFigures>& figures) { return figures ? ToJson(*figures) : Json(); }
+
 Json ToJson(const DenseError& e) {
-  // Null: there was nothing to measure.
-  const auto where = [](bool measured, const DepthFigures& figures) { return measured ? ToJson(figures) : Json(); };
-  const bool has_mesh = e.mesh_vertices > 0.0;
   Json json = {{"scale", EnumName(e.scale)},
                {"frames_compared", e.frames},
                {"frames_without_depth", e.frames_without_depth},
@@ -106,13 +108,13 @@ Json ToJson(const DenseError& e) {
                {"within_2_sigma", e.within_2_sigma},
                {"estimate", ToJson(e.estimate)},
                {"certain_half", ToJson(e.certain_half)},
-               {"interpolation", where(e.interpolation.rmse_mm > 0.0, e.interpolation)},
-               {"filled", where(e.filled_share > 0.0, e.filled)},
+               {"interpolation", OrNull(e.interpolation)},
+               {"filled", OrNull(e.filled)},
                {"filled_share", e.filled_share},
-               {"mesh", where(has_mesh && e.mesh_alone_share < 1.0, e.mesh)},
-               {"mesh_alone", where(has_mesh && e.mesh_alone_share > 0.0, e.mesh_alone)},
+               {"mesh", OrNull(e.mesh)},
+               {"mesh_alone", OrNull(e.mesh_alone)},
                {"mesh_vertices", e.mesh_vertices},
-               {"mesh_alone_share", e.mesh_alone_share},
+               {"mesh_alone_share", e.mesh_alone_share ? Json(*e.mesh_alone_share) : Json()},
                {"null", ToJson(e.null)}};
   if (e.textured) json["textured"] = {{"share", e.textured->share}, {"known_share", e.textured->known_share}};
   return json;

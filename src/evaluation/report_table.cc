@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <optional>
+#include <string>
+
 #include "evaluation/format_text.h"
 #include "pliant/evaluation/report.h"
 
@@ -59,6 +62,8 @@ std::string DenseRow(const char* what, const DepthFigures& f) {
                     f.rmse_log, 100 * f.within_mm[0], 100 * f.within_mm[1], 100 * f.within_mm[2]);
 }
 
+std::string DenseRow(const char* what, const std::optional<DepthFigures>& f) { return f ? DenseRow(what, *f) : ""; }
+
 std::string DenseTable(const DenseError& e) {
   const std::string without =
       e.frames_without_depth > 0 ? FormatText(", %d more have no depth", e.frames_without_depth) : "";
@@ -71,10 +76,8 @@ std::string DenseTable(const DenseError& e) {
          FormatText("  %-26s %8s %8s %8s %8s %7s %7s %7s\n", "", "AbsRel", "SqRel", "RMSE", "log", "<1 mm", "<2",
                     "<5 %") +
          DenseRow("surface", e.estimate) + DenseRow("  its more certain half", e.certain_half) +
-         (e.filled_share > 0 ? DenseRow("filled holes", e.filled) : "") +
-         (e.mesh_vertices > 0 ? DenseRow("mesh, where it is known", e.mesh) + DenseRow("mesh elsewhere", e.mesh_alone)
-                              : "") +
-         (e.interpolation.rmse_mm > 0 ? DenseRow("points, interpolated", e.interpolation) : "") +
+         DenseRow("filled holes", e.filled) + DenseRow("mesh, where it is known", e.mesh) +
+         DenseRow("mesh elsewhere", e.mesh_alone) + DenseRow("points, interpolated", e.interpolation) +
          DenseRow("one constant depth", e.null) +
          FormatText("  known to 1, 2, 5 mm: %.1f, %.1f, %.1f %%; within 1 sigma %.1f %%, 2 sigma %.1f %%\n",
                     100 * e.complete_mm[0], 100 * e.complete_mm[1], 100 * e.complete_mm[2], 100 * e.within_1_sigma,

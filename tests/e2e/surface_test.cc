@@ -61,10 +61,10 @@ TEST(RigidScene, ItsSurfaceIsNearerToTheTruthThanItsPointsInterpolated) {
   EXPECT_EQ(error->frames, 2);
   EXPECT_GT(error->known_share, kMinKnown);
   EXPECT_LT(error->estimate.abs_rel, kMaxAbsRel);
-  EXPECT_LT(error->estimate.rmse_mm, kShareOfPlate * error->interpolation.rmse_mm);
+  EXPECT_LT(error->estimate.rmse_mm, kShareOfPlate * error->interpolation.value().rmse_mm);
   EXPECT_GT(error->within_2_sigma, kMinWithinTwoSigma);
   EXPECT_GT(error->mesh_vertices, kMinVertices);
-  EXPECT_LT(error->mesh.abs_rel, kMaxAbsRel);
+  EXPECT_LT(error->mesh.value().abs_rel, kMaxAbsRel);
 }
 
 class SurfaceFiles : public testing::Test {
@@ -191,7 +191,7 @@ TEST_F(SurfaceFiles, MarkWhatWasFilled) {
   const auto error = ComputeDenseError(*surface, *ReadEvaluationInput(kDefaultRun), **sequence, ErrorScale::kPerFrame);
   ASSERT_TRUE(error.ok()) << error.status().message();
   EXPECT_GT(error->filled_share, 0.0);
-  EXPECT_LT(error->filled.abs_rel, kMaxAbsRelFilled);
+  EXPECT_LT(error->filled.value().abs_rel, kMaxAbsRelFilled);
 }
 
 TEST_F(SurfaceFiles, HaveNormalsAndFloatsOnRequest) {

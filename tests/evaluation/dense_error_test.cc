@@ -97,9 +97,18 @@ TEST_F(DenseErrorTest, TheTableNamesItsScale) {
     EXPECT_THAT(EvaluationTable(evaluation), testing::HasSubstr("dense depth (scale " + name + "; 2 frames"));
     const auto json = nlohmann::json::parse(EvaluationJson(evaluation));
     EXPECT_EQ(json.at("dense").at("scale"), name);
-    for (const char* not_there : {"filled", "mesh", "mesh_alone"})
-      EXPECT_TRUE(json.at("dense").at(not_there).is_null()) << not_there;
   }
+}
+
+TEST_F(DenseErrorTest, WhatWasNotMeasuredIsNull) {
+  Evaluation evaluation;
+  evaluation.dense = *ComputeDenseError(WriteSurface([](cv::Mat*) {}), {}, sequence_, ErrorScale::kPerFrame);
+  const auto dense = nlohmann::json::parse(EvaluationJson(evaluation)).at("dense");
+  for (const char* name : {"filled", "mesh", "mesh_alone", "mesh_alone_share", "interpolation"})
+    EXPECT_TRUE(dense.at(name).is_null()) << name;
+  for (const char* name : {"filled_share", "mesh_vertices"}) EXPECT_EQ(dense.at(name), 0.0) << name;
+  for (const char* name : {"filled holes", "mesh", "interpolated"})
+    EXPECT_THAT(EvaluationTable(evaluation), testing::Not(testing::HasSubstr(name)));
 }
 
 TEST_F(DenseErrorTest, TheMeshIsComparedWhereTheFrameHasADepthAndElsewhere) {
@@ -119,9 +128,10 @@ TEST_F(DenseErrorTest, TheMeshIsComparedWhereTheFrameHasADepthAndElsewhere) {
   }
   const auto error = ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame);
   ASSERT_TRUE(error.ok()) << error.status().message();
-  EXPECT_NEAR(error->mesh.abs_rel, 0.02, 1e-3);
-  EXPECT_NEAR(error->mesh_alone.abs_rel, 0.1, 1e-3);
-  EXPECT_NEAR(error->mesh_alone_share, 0.25, 0.02);
+  ASSERT_TRUE(error->mesh && error->mesh_alone);
+  EXPECT_NEAR(error->mesh->abs_rel, 0.02, 1e-3);
+  EXPECT_NEAR(error->mesh_alone->abs_rel, 0.1, 1e-3);
+  EXPECT_NEAR(error->mesh_alone_share.value(), 0.25, 0.02);
   EXPECT_NEAR(error->mesh_vertices, Rendered().camera.width() / 8.0, 1);
 }
 
@@ -139,7 +149,8 @@ TEST_F(DenseErrorTest, WhatWasFilledIsApart) {
   ASSERT_TRUE(error.ok()) << error.status().message();
   EXPECT_LT(error->estimate.abs_rel, 1e-3);
   EXPECT_NEAR(error->known_share, 7.0 / 8, 0.02);
-  EXPECT_NEAR(error->filled.abs_rel, 0.1, 1e-3);
+  ASSERT_TRUE(error->filled.has_value());
+  EXPECT_NEAR(error->filled->abs_rel, 0.1, 1e-3);
   EXPECT_NEAR(error->filled_share, 1.0 / 8, 0.02);
 }
 

@@ -40,18 +40,19 @@ struct DenseError {
   double known_share = 0;        // of the pixels with a true depth
   std::array<double, 3> complete_mm = {};  // share of these that are known to 1, 2, 5 mm
   DepthFigures estimate;
-  DepthFigures certain_half;   // of the pixels with the smaller sigmas
-  DepthFigures interpolation;  // a thin plate through the run's points, at the pixels of `estimate`
-  DepthFigures null;           // one constant depth there
-  DepthFigures filled;         // of the pixels that were filled from the rim of a hole, which are none of the others;
-                               // over the frames that have such ones
-  double filled_share = 0;     // of the pixels with a true depth; 0: holes were not filled
-  DepthFigures mesh;           // of the mesh's vertices, where the frame has a depth of its own too; over the frames
-                               // that have such ones
-  DepthFigures mesh_alone;     // where it has none: also of tissue that is hidden here; likewise
-  double mesh_vertices = 0;    // mean over the frames; 0: there is no mesh
-  double mesh_alone_share = 0;
-  double within_1_sigma = 0;  // shares of the pixels of `estimate`
+  DepthFigures certain_half;                    // of the pixels with the smaller sigmas
+  std::optional<DepthFigures> interpolation;    // a thin plate through the run's points, at the pixels of `estimate`;
+                                                // nothing: too few points
+  DepthFigures null;                            // one constant depth there
+  std::optional<DepthFigures> filled;           // of the pixels that were filled from the rim of a hole, which are none
+                                                // of the others; over the frames that have such ones; nothing: none has
+  double filled_share = 0;                      // of the pixels with a true depth; 0: holes were not filled
+  std::optional<DepthFigures> mesh;             // of the mesh's vertices, where the frame has a depth of its own too;
+                                                // over the frames that have such ones; nothing: none has
+  std::optional<DepthFigures> mesh_alone;       // where it has none: also of tissue that is hidden here; likewise
+  double mesh_vertices = 0;                     // mean over the frames; 0: there is no mesh
+  std::optional<double> mesh_alone_share = {};  // of the vertices; nothing: there is no mesh
+  double within_1_sigma = 0;                    // shares of the pixels of `estimate`
   double within_2_sigma = 0;
   std::optional<DenseCompleteness> textured;  // nothing: it is not known what other images see
 };
