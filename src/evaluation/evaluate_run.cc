@@ -63,7 +63,7 @@ Status AddDense(const EvaluationInput& run, const RunReferences& references, con
   const auto surface = ReadSurfaceFolder(references.surface_path);
   if (!surface.ok()) return surface.status();
   auto dense = ComputeDenseError(*surface, run, *references.truth->sequence, options.points.scale);
-  if (!dense.ok() && dense.status().code() == ErrorCode::kInsufficient) {  // as of other parts without truth
+  if (dense.status().code() == ErrorCode::kInsufficient) {  // as of other parts without truth
     evaluation->notes.push_back(dense.status().message());
     return Status::Ok();
   }

@@ -19,7 +19,9 @@
 
 #include "evaluation/truth_sequence.h"
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
+#include "pliant/io/camera_file.h"
 #include "pliant/io/run_summary.h"
 #include "pliant/simulation/write_sequence.h"
 #include "support/tolerances.h"
@@ -225,6 +227,25 @@ TEST_F(RunFolderEvaluation, BadRowsAndEmptyRunsAreOneSentence) {
     EXPECT_THAT(status.message(), HasSubstr(says));
     EXPECT_THAT(status.message(), HasSubstr(Run()));
   }
+}
+
+TEST_F(RunFolderEvaluation, ASurfaceWithoutTrueDepthIsANoteAndTheRestIsThere) {
+  WriteRun(MakeRun(8, 1, 1));
+  const fs::path surface = root_ / "surface";
+  fs::create_directories(surface);
+  ASSERT_TRUE(WriteCameraFile((surface / "camera.yaml").string(), {.camera = TestCamera(), .depth_scale = 0.01}).ok());
+  std::ofstream(surface / "surface.json")
+      << R"({"status": "completed", "frames": [{"frame": 2, "name": "2.png", "note": ""}]})";
+  OpenedTruth truth;
+  truth.sequence = std::make_unique<TruthSequence>(8, TruthSequence::Truth::kPosesOnly);
+  truth.material = kNoMaterial.status();
+  const auto evaluation =
+      EvaluateRun(Run(), RunReferences{.truth = &truth, .surface_path = surface.string()}, EvaluationOptions());
+  ASSERT_TRUE(evaluation.ok()) << evaluation.status().message();
+  EXPECT_FALSE(evaluation->dense.has_value());
+  EXPECT_TRUE(evaluation->trajectory.has_value());
+  EXPECT_THAT(evaluation->notes, testing::Contains(HasSubstr("has pixels whose true depth is known")));
+  EXPECT_TRUE(nlohmann::json::parse(EvaluationJson(*evaluation)).at("dense").is_null());
 }
 
 TEST_F(RunFolderEvaluation, AgreesWithAnIndependentNumPyScript) {

@@ -84,7 +84,7 @@ def dense_depths(folder):
         figures = {"rmse_mm": rmse, "abs_rel": 0.01, "within_2_mm": 0.9}
         evaluation = {"surface": {"estimate": {"mean_rmse_mm": 0.5}},
                       "dense": {"known_share": 0.8, "textured": {"known_share": 0.9}, "estimate": figures, "certain_half": figures,
-                                "interpolation": figures, "null": figures, "mesh": figures,
+                                "interpolation": figures, "null": figures, "mesh": figures if seed == 1 else None,
                                 "mesh_alone": figures, "within_1_sigma": 0.7,
                                 "within_2_sigma": 0.95}} if rmse else {}
         (path / "evaluation.json").write_text(json.dumps(evaluation), encoding="utf-8")
@@ -93,7 +93,7 @@ def dense_depths(folder):
     os.chdir(folder)
     dense.write(runs, folder / "table.md", folder / "table.csv")
     line = (folder / "table.md").read_text(encoding="utf-8").splitlines()[2]
-    assert line == ("| dm | 5 | 2.5 | online | 2 of 3 | 0.50 | 80 | 90 | 0.50 | 1.00 | 0.50 | 0.50 | 1.00 | 1.0 | 0.50 | 90 | "
+    assert line == ("| dm | 5 | 2.5 | online | 2 of 3 | 0.50 | 80 | 90 | 0.50 | 1.00 | 0.50 | 0.50 | 1.00 | 1.0 | 0.40 | 90 | "
                     "70 | 95 | 1.2 |"), line
     assert len(grid.read_rows(folder / "table.csv")) == 2
 

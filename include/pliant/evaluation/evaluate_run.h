@@ -58,8 +58,8 @@ struct RunReferences {
 };
 
 // The same with what there is. Fails also as ReadSurfaceFolder, ComputeDenseError, EvaluateWithoutTruth, AddSfmError
-// (`references.sfm`; those of the sequence leave a note) and AddConsistency, and with kNotFound where neither run nor
-// sequence says how large the images are.
+// (`references.sfm`; those of the sequence leave a note, and so does a surface without pixels of true depth) and
+// AddConsistency, and with kNotFound where neither run nor sequence says how large the images are.
 Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences& references,
                                const EvaluationOptions& options, const JobProgress& progress = {});
 
