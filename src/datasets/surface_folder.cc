@@ -45,10 +45,9 @@ int FrameNumber(const nlohmann::json& json) {
   return json.get<int>();
 }
 
-// Throws likewise.
+// Without its file. Throws likewise.
 SurfaceFolder::Frame FrameOf(const nlohmann::json& json) {
-  SurfaceFolder::Frame frame{
-      FrameNumber(json.at("frame")), json.at("name").get<std::string>(), {}, json.value("pair", false)};
+  SurfaceFolder::Frame frame{FrameNumber(json.at("frame")), {}, {}, json.value("pair", false)};
   for (const auto& neighbor : json.value("neighbors", nlohmann::json::array()))
     frame.neighbors.push_back(FrameNumber(neighbor));
   return frame;
@@ -96,20 +95,20 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
     folder.run = json.value("run", "");
     folder.trajectory_checksum = json.value("trajectory_crc32", "");
     std::set<int> known;
-    for (const auto& frame : json.at("frames")) {
-      const int frame_idx = FrameNumber(frame.at("frame"));
-      if (!known.insert(frame_idx).second)
+    for (const auto& entry : json.at("frames")) {
+      SurfaceFolder::Frame frame = FrameOf(entry);
+      if (!known.insert(frame.frame_idx).second)
         return Status(ErrorCode::kUnreadable,
-                      Quoted(summary) + " has frame " + std::to_string(frame_idx) + " more than once");
-      if (!frame.at("note").get<std::string>().empty()) {
-        folder.frames_without_depth.push_back(frame_idx);
+                      Quoted(summary) + " has frame " + std::to_string(frame.frame_idx) + " more than once");
+      if (!entry.at("note").get<std::string>().empty()) {
+        folder.frames_without_depth.push_back(std::move(frame));
         continue;
       }
-      folder.frames.push_back(FrameOf(frame));
-      if (!IsFileName(folder.frames.back().file_name))
-        return Status(ErrorCode::kUnreadable, Quoted(summary) + " names a frame " +
-                                                  Quoted(folder.frames.back().file_name) +
-                                                  ", which is not a file's name");
+      frame.file_name = entry.at("name").get<std::string>();
+      if (!IsFileName(frame.file_name))
+        return Status(ErrorCode::kUnreadable,
+                      Quoted(summary) + " names a frame " + Quoted(frame.file_name) + ", which is not a file's name");
+      folder.frames.push_back(std::move(frame));
     }
     if (const std::string shared = SharedFileName(folder.frames); !shared.empty())
       return Status(ErrorCode::kUnreadable, Quoted(summary) + " gives two frames one file, " + Quoted(shared) +

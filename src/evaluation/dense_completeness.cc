@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -109,13 +110,30 @@ Result<std::optional<std::vector<int>>> SeenElsewhere(const SurfaceFolder& surfa
   return std::optional(*std::move(seen));
 }
 
+// In the order of time; also those of which no depth is known.
+std::vector<SurfaceFolder::Frame> ComparedFrames(const SurfaceFolder& surface) {
+  std::vector<SurfaceFolder::Frame> frames = surface.frames;
+  std::ranges::copy_if(surface.frames_without_depth, std::back_inserter(frames),
+                       [](const auto& frame) { return frame.has_pair || !frame.neighbors.empty(); });
+  std::ranges::sort(frames, {}, &SurfaceFolder::Frame::frame_idx);
+  return frames;
+}
+
+// CV_32FC1, 0: none.
+Result<cv::Mat> MeasuredDepth(const SurfaceFolder& surface, const SurfaceFolder::Frame& frame) {
+  if (frame.file_name.empty()) return cv::Mat(surface.camera.height(), surface.camera.width(), CV_32F, cv::Scalar(0));
+  auto dense = ReadSurfaceDepth(surface, frame);
+  if (!dense.ok()) return dense.status();
+  dense->KeepMeasured();
+  return dense->depth;
+}
+
 }  // namespace
 
 Result<std::optional<DenseCompleteness>> ComputeDenseCompleteness(const SurfaceFolder& surface, Sequence* images,
                                                                   MaterialTruth* material, const MaskOptions& masks) {
   if (!surface.windows) return std::optional<DenseCompleteness>();
-  std::vector<SurfaceFolder::Frame> in_order = surface.frames;
-  std::ranges::sort(in_order, {}, &SurfaceFolder::Frame::frame_idx);
+  const std::vector<SurfaceFolder::Frame> in_order = ComparedFrames(surface);
   DenseCompleteness sum;
   int frames = 0;
   for (const SurfaceFolder::Frame& frame : in_order) {
@@ -124,11 +142,9 @@ Result<std::optional<DenseCompleteness>> ComputeDenseCompleteness(const SurfaceF
     if (!truth_mm->has_value()) continue;
     const auto image = ReadFrame(frame.frame_idx, images);
     if (!image.ok()) return image.status();
-    auto dense = ReadSurfaceDepth(surface, frame);
+    const auto dense = MeasuredDepth(surface, frame);
     if (!dense.ok()) return dense.status();
-    dense->KeepMeasured();
-    if (!image->has_value() || (*image)->image.size() != dense->depth.size() ||
-        (*truth_mm)->size() != dense->depth.size())
+    if (!image->has_value() || (*image)->image.size() != dense->size() || (*truth_mm)->size() != dense->size())
       return Status(ErrorCode::kMismatch, "image and true depth of frame " + std::to_string(frame.frame_idx) +
                                               " have not the size of the surface; give the sequence that it is of");
     if (std::ranges::any_of(frame.neighbors, [&](int neighbor) { return neighbor >= images->size(); }))
@@ -148,7 +164,7 @@ Result<std::optional<DenseCompleteness>> ComputeDenseCompleteness(const SurfaceF
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       if ((**seen)[i] < wanted) continue;
       ++expected;
-      known += dense->depth.at<float>(PointOf(pixels[i])) > 0.0F ? 1.0 : 0.0;
+      known += dense->at<float>(PointOf(pixels[i])) > 0.0F ? 1.0 : 0.0;
     }
     if (expected == 0.0) continue;
     ++frames;

@@ -334,8 +334,8 @@ Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const Evaluat
       frames.push_back(ScaleOfFrame(pixels, submap));
   };
   if (Status status = ForEachFrame(surface, run, sequence, take_scale); !status.ok()) return status;
-  for (const int frame_idx : surface.frames_without_depth) {
-    const auto truth_mm = sequence.Depth(frame_idx);
+  for (const SurfaceFolder::Frame& frame : surface.frames_without_depth) {
+    const auto truth_mm = sequence.Depth(frame.frame_idx);
     if (!truth_mm.ok()) return truth_mm.status();
     without_pixels += truth_mm->has_value() && cv::countNonZero(**truth_mm > 0.0F) > 0 ? 1 : 0;
   }

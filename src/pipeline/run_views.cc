@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "pipeline/run_frames.h"
 #include "pliant/base/statistics.h"

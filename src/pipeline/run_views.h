@@ -28,7 +28,7 @@ struct PosedFrame {
   int frame_idx = 0;
   int submap = 0;
   double timestamp_s = 0;
-  bool provisional = false;
+  bool provisional = false;  // TrackingState; another program's run does not say
   Rigid3 cam_from_world;
   std::vector<PointObservation> observations;  // sorted by id
 };

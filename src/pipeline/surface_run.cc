@@ -12,21 +12,20 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <span>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
 #include "pipeline/run_views.h"
 #include "pipeline/surface_meshes.h"
 #include "pipeline/surface_neighbors.h"
+#include "pipeline/surface_notes.h"
 #include "pipeline/surface_writer.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
-#include "pliant/datasets/native_layout.h"
 #include "pliant/datasets/run_sequence.h"
 #include "pliant/datasets/surface_folder.h"
 #include "pliant/image/depth_lookup.h"
@@ -38,8 +37,6 @@
 namespace pliant {
 namespace {
 
-constexpr const char* kNotTracked = "it was not tracked";
-constexpr const char* kNotInRun = "the run has no such frame";
 constexpr const char* kOtherImages =
     "the images do not show the points in the colors that they had when they were tracked; are they the images of the "
     "run? Name those with --sequence";
@@ -117,13 +114,6 @@ double LargestDepth(const std::vector<PosedFrame>& frames) {
   return std::min(2.0 * largest, 4.0 * far);
 }
 
-// The images of its neighbors do not agree with it, or are from so near that they tell no depth.
-std::string NothingKnown(double max_sigma) {
-  return "no pixel's depth is known to " + Percent(max_sigma) +
-         ", as Surface.max_sigma demands: the images do not agree, or are taken from so near each other that they tell "
-         "no depth; compare others (Surface.max_frames_apart, Surface.neighbors)";
-}
-
 class SurfaceMaker {
  public:
   // `window_px`: of the normals.
@@ -182,9 +172,7 @@ class SurfaceMaker {
     else
       for (const std::size_t n : neighbors) others.push_back(images.At(n));
     if (others.empty()) {
-      frame->note = "no other frame has " + Percent(options_.min_common_points) +
-                    " of its points, seen from elsewhere by at most " + Digits(options_.max_parallax_deg, 0) +
-                    " deg; track more frames, or raise Surface.max_parallax_deg or lower Surface.min_common_points";
+      frame->note = NoteWithoutNeighbors(options_);
       return Status::Ok();
     }
     auto dense = estimator_.Estimate(images.At(reference), others);
@@ -194,7 +182,10 @@ class SurfaceMaker {
       return Status::Ok();
     }
     Describe(*dense, images.At(reference).valid, frame);
-    if (frame->known_share == 0.0) frame->note = NothingKnown(options_.depth.max_sigma);
+    if (!(frame->known_share > 0.0)) {
+      frame->note = NoteWithoutDepth(dense->rejected, options_.depth);
+      return Status::Ok();
+    }
     SurfaceMaps maps{*std::move(dense), {}, {}};
     if (options_.fill > 0) {
       maps.filled = FillHoles(camera, images.TissueIn(reference), options_.fill, &maps.dense);
@@ -213,102 +204,16 @@ class SurfaceMaker {
   SurfaceWriter* writer_;
 };
 
-// Why the frames have no depth: what is said of the first one that was tracked.
-std::string ReasonOf(const std::vector<SurfaceFrame>& frames) {
-  const auto has_reason = [](const SurfaceFrame& frame) {
-    return !frame.note.empty() && frame.note != kNotTracked && frame.note != kNotInRun;
-  };
-  const auto found = std::ranges::find_if(frames, has_reason);
-  return found != frames.end() ? found->note : "none was compared with another one";
-}
-
-// The chosen frames that have no pose, with a note of why. Another program's run does not say which frames it read.
-std::vector<SurfaceFrame> FramesWithoutPose(const SurfaceRequest& request, const Run& run,
-                                            const std::vector<PosedFrame>& posed) {
-  std::set<int> tracked;
-  std::set<int> read;
-  for (const PosedFrame& frame : posed) tracked.insert(frame.frame_idx);
-  for (const RunFrame& frame : run.frames) read.insert(frame.frame_idx);
-  std::vector<SurfaceFrame> missing;
-  for (const int frame_idx : std::set<int>(request.frames.begin(), request.frames.end())) {
-    if (tracked.contains(frame_idx)) continue;
-    const bool was_read = read.empty() || read.contains(frame_idx);
-    missing.push_back(
-        {.frame_idx = frame_idx, .name = native::FrameFileName(frame_idx), .note = was_read ? kNotTracked : kNotInRun});
-  }
-  return missing;
-}
-
-std::string FramesOf(const Run& run) {
-  const auto [first, last] = std::ranges::minmax(run.frames, {}, &RunFrame::frame_idx);
-  return std::to_string(first.frame_idx) + " to " + std::to_string(last.frame_idx);
-}
-
-// "frame 70", "frames 70, 71, 72 and 12 more".
-std::string FrameNumbers(const std::vector<SurfaceFrame>& frames) {
-  constexpr std::size_t kMostNamed = 10;
-  const std::span named(frames.data(), std::min(frames.size(), kMostNamed));
-  std::string text = frames.size() == 1 ? "frame " : "frames ";
-  text += CommaSeparated(named, [](const SurfaceFrame& frame) { return std::to_string(frame.frame_idx); });
-  if (frames.size() > kMostNamed) text += " and " + std::to_string(frames.size() - kMostNamed) + " more";
-  return text;
-}
-
-// One for each reason.
-std::vector<std::string> WarningsOf(const std::vector<SurfaceFrame>& missing, const Run& run) {
-  std::vector<std::string> warnings;
-  for (const std::string_view note : {kNotInRun, kNotTracked}) {
-    std::vector<SurfaceFrame> frames;
-    std::ranges::copy_if(missing, std::back_inserter(frames), [&](const auto& frame) { return frame.note == note; });
-    if (frames.empty()) continue;
-    const std::string left_out = " and " + std::string(frames.size() == 1 ? "is" : "are") + " left out";
-    warnings.push_back(note == kNotInRun ? FrameNumbers(frames) + (frames.size() == 1 ? " is" : " are") +
-                                               " not in the run, whose frames are " + FramesOf(run) + "," + left_out
-                                         : FrameNumbers(frames) + (frames.size() == 1 ? " was" : " were") +
-                                               " not tracked" + left_out);
-  }
-  return warnings;
-}
-
-// A warning where some are of a provisional map; else empty.
-std::string ProvisionalWarning(const std::vector<SurfaceFrame>& frames) {
-  const auto provisional = std::ranges::count_if(frames, &SurfaceFrame::provisional);
-  if (provisional == 0) return {};
-  return std::to_string(provisional) + " of " + std::to_string(frames.size()) +
-         " frames are of a provisional map, whose depths are less certain than demanded: so is what the surface has "
-         "from it (poses, and the motion through which images are compared)";
-}
-
 bool HasMesh(const std::string& path) {
   std::error_code error;
   const std::filesystem::directory_iterator meshes(std::filesystem::path(path) / surface::kMeshFolder, error);
   return !error && meshes != std::filesystem::directory_iterator();
 }
 
-// Where the points of chosen frames rest where they were seen first; else empty.
-std::string StillWarning(const std::vector<PosedFrame>& frames, const std::vector<std::size_t>& chosen,
-                         const RunMap& run) {
-  constexpr double kStill = 1e-4;  // by the distance from the camera
-  const auto is_still = [&](std::size_t k) {
-    const PosedFrame& frame = frames[k];
-    return std::ranges::none_of(frame.observations, [&](const PointObservation& seen) {
-      const auto point = run.points.find(seen.id);
-      const double distance = (frame.cam_from_world * seen.position).norm();
-      return point != run.points.end() && (seen.position - point->second.position).norm() > kStill * distance;
-    });
-  };
-  const auto still = std::ranges::count_if(chosen, is_still);
-  if (still == 0) return {};
-  return "the run takes the scene as rigid in " + std::to_string(still) + " of " + std::to_string(chosen.size()) +
-         " frames: displacement and strain of the mesh are 0 there, whatever the tissue did";
-}
-
-// Of what was made.
-void AddWarnings(const SurfaceRunOptions& options, const std::vector<PosedFrame>& frames, const Plan& plan,
-                 const RunMap& known, SurfaceSummary* summary) {
-  const std::string of_points = options.mesh_columns > 0 ? StillWarning(frames, plan.references, known) : std::string();
-  for (const std::string& warning : {ProvisionalWarning(summary->frames), of_points})
-    if (!warning.empty()) summary->warnings.push_back(warning);
+// Those that say something.
+void AddWarnings(const std::vector<std::string>& warnings, SurfaceSummary* summary) {
+  std::ranges::copy_if(warnings, std::back_inserter(summary->warnings),
+                       [](const std::string& warning) { return !warning.empty(); });
 }
 
 // What the meshes of a surface are made of, besides its depths.
@@ -337,14 +242,6 @@ Status AddMeshes(const SurfaceRequest& request, const SurfaceRunOptions& options
         "there is no mesh: its vertices are too far apart, or too few pixels have a depth, for a triangle; raise "
         "Surface.mesh_columns");
   return Status::Ok();
-}
-
-Status NoFrameChosen(const SurfaceRequest& request, const Run& run, const std::vector<SurfaceFrame>& missing) {
-  if (!missing.empty() &&
-      std::ranges::all_of(missing, [](const SurfaceFrame& frame) { return frame.note == kNotInRun; }))
-    return {ErrorCode::kInvalidArgument, "the run " + Quoted(request.run_path) + " has none of the chosen frames (" +
-                                             FrameNumbers(missing) + "); its frames are " + FramesOf(run)};
-  return {ErrorCode::kInsufficient, "none of the chosen frames was tracked in " + Quoted(request.run_path)};
 }
 
 }  // namespace
@@ -407,8 +304,9 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   const Status made =
       SurfaceMaker(request, options, callback, *estimator, ComparedWindowPx(tracked, options.depth), &*writer)
           .Make(*frames, plan, *known, &images, &summary);
-  if (images.AreOfOtherImages()) summary.warnings.push_back(kOtherImages);
-  AddWarnings(options, *frames, plan, *known, &summary);
+  AddWarnings({images.AreOfOtherImages() ? kOtherImages : "", ProvisionalWarning(summary.frames),
+               options.mesh_columns > 0 ? StillWarning(*frames, plan.references, *known) : ""},
+              &summary);
   std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
   // Until the meshes are there too, the folder says that it was interrupted.
   const bool stopped = summary.stopped || !made.ok();
@@ -417,8 +315,8 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (!made.ok()) return made;
   if (!finished.ok()) return finished;
   if (std::ranges::none_of(summary.frames, [](const SurfaceFrame& frame) { return frame.known_share > 0.0; }))
-    return Status(ErrorCode::kInsufficient, "no frame has a depth: " + ReasonOf(summary.frames) +
-                                                (images.AreOfOtherImages() ? std::string("; ") + kOtherImages : ""));
+    return Status(ErrorCode::kInsufficient,
+                  "no frame has a depth: " + (images.AreOfOtherImages() ? kOtherImages : ReasonOf(summary.frames)));
   if (stopped) return summary;
   summary.stopped = false;
   if (options.mesh_columns > 0)

@@ -66,6 +66,11 @@ SweepLevels FineLevels(const SizedScene& scene, const cv::Mat& center, int threa
   return {center, cv::min(step, kMaxRange / kFineHalf), kFineHalf};
 }
 
+struct JudgedPixel {
+  double sigma = 0;  // of the depth, relative, without that of the points
+  std::optional<DepthRejection> rejection;
+};
+
 cv::Mat InverseDistances(const SweepLevels& levels, const ChosenLevels& chosen) {
   cv::Mat result = levels.center.mul(levels.step).mul(chosen.level);
   result += levels.center;
@@ -86,8 +91,8 @@ struct DenseDepthEstimator::State {
   Result<Scene> MakeScene(const SurfaceView& reference, std::span<const SurfaceView> neighbors) const;
   cv::Mat CoarseInverseDistances(const Scene& scene) const;
   DenseDepth FineDepth(const Scene& scene, const cv::Mat& coarse) const;
-  template <class Sigmas>
-  DenseDepth Finished(const Scene& scene, const cv::Mat& inverse_distance, const Sigmas& sigma_at) const;
+  template <class Judge>
+  DenseDepth Finished(const Scene& scene, const cv::Mat& inverse_distance, const Judge& judge) const;
 };
 
 void DenseDepthOptions::List(OptionTable& table) {
@@ -161,23 +166,29 @@ cv::Mat DenseDepthEstimator::State::CoarseInverseDistances(const Scene& scene) c
   return result;
 }
 
-template <class Sigmas>
+template <class Judge>
 DenseDepth DenseDepthEstimator::State::Finished(const Scene& scene, const cv::Mat& inverse_distance,
-                                                const Sigmas& sigma_at) const {
+                                                const Judge& judge) const {
   const cv::Mat log_point_sigma = scene.surface.log_relative_sigma.ToImage(fine.size(), 1.0);
   DenseDepth result{cv::Mat(fine.size(), CV_32F, cv::Scalar::all(0)), cv::Mat(fine.size(), CV_32F, cv::Scalar::all(0))};
+  const auto reject = [&](DepthRejection why, int pixels) { result.rejected[static_cast<std::size_t>(why)] += pixels; };
   for (int y = 0; y < fine.size().height; ++y)
     for (int x = 0; x < fine.size().width; ++x) {
-      const float ray_z = fine.rays.at<cv::Vec3f>(y, x)[2];
-      const double sigma = sigma_at(y, x);
-      if (!(sigma > 0.0) || sigma > options.max_sigma || !(ray_z > 0.0F)) continue;
-      result.depth.at<float>(y, x) = ray_z / inverse_distance.at<float>(y, x);
-      result.sigma.at<float>(y, x) = static_cast<float>(std::hypot(sigma, std::exp(log_point_sigma.at<float>(y, x))));
+      const JudgedPixel pixel = judge(y, x);
+      if (pixel.rejection) {
+        reject(*pixel.rejection, 1);
+        continue;
+      }
+      result.depth.at<float>(y, x) = fine.rays.at<cv::Vec3f>(y, x)[2] / inverse_distance.at<float>(y, x);
+      result.sigma.at<float>(y, x) =
+          static_cast<float>(std::hypot(pixel.sigma, std::exp(log_point_sigma.at<float>(y, x))));
     }
+  const int known = cv::countNonZero(result.depth);
   RemoveSpeckles(&result.depth);
+  reject(DepthRejection::kSpeckle, known - cv::countNonZero(result.depth));
   result.sigma.setTo(0.0F, result.depth == 0.0F);
   const cv::Size size(camera.width(), camera.height());
-  return {Enlarged(result.depth, size), Enlarged(result.sigma, size)};
+  return {Enlarged(result.depth, size), Enlarged(result.sigma, size), result.rejected};
 }
 
 DenseDepth DenseDepthEstimator::State::FineDepth(const Scene& scene, const cv::Mat& coarse_inverse_distances) const {
@@ -197,15 +208,28 @@ DenseDepth DenseDepthEstimator::State::FineDepth(const Scene& scene, const cv::M
   match_sigmas *= FactorByPoints(fine, scene.surface, inverse, match_sigmas);
   const cv::Mat near_contours =
       NearContours(inverse, match_sigmas, fine.camera.MeanFocalLengthPx(), fine_comparison.window_px);
-  const auto sigma_at = [&](int y, int x) -> double {
+  const auto rejection_at = [&](int y, int x, double sigma) -> std::optional<DepthRejection> {
     const float level_sigma = sigmas.at<float>(y, x);
-    const bool hole = sized.reference.image.valid.at<std::uint8_t>(y, x) == 0 || level_sigma == 0.0F ||
-                      chosen.at_end.at<std::uint8_t>(y, x) != 0 || near_contours.at<std::uint8_t>(y, x) != 0 ||
-                      disagreement.at<float>(y, x) > options.max_disagreement * 2.0 * level_sigma ||
-                      !AreAlike(sized.reference, chosen.cost.at<float>(y, x), x, y, options.min_correlation);
-    return hole ? 0.0 : std::hypot(match_sigmas.at<float>(y, x), motion_sigmas.at<float>(y, x));
+    if (sized.reference.image.valid.at<std::uint8_t>(y, x) == 0 || !(fine.rays.at<cv::Vec3f>(y, x)[2] > 0.0F))
+      return DepthRejection::kNotSurface;
+    if (chosen.cost.at<float>(y, x) >= kUnknownCost) return DepthRejection::kUnseen;
+    if (kMinSigmaLevels * kFineStepPx > options.max_sigma * parallax.at<float>(y, x))
+      return DepthRejection::kLittleParallax;
+    if (level_sigma == 0.0F) return DepthRejection::kNoMinimum;
+    if (chosen.at_end.at<std::uint8_t>(y, x) != 0) return DepthRejection::kOutermost;
+    if (near_contours.at<std::uint8_t>(y, x) != 0) return DepthRejection::kNearContour;
+    if (disagreement.at<float>(y, x) > options.max_disagreement * 2.0 * level_sigma)
+      return DepthRejection::kDisagreement;
+    if (!AreAlike(sized.reference, chosen.cost.at<float>(y, x), x, y, options.min_correlation))
+      return DepthRejection::kUnlike;
+    if (!(sigma > 0.0) || sigma > options.max_sigma) return DepthRejection::kUncertain;
+    return std::nullopt;
   };
-  return Finished(scene, inverse, sigma_at);
+  const auto judge = [&](int y, int x) -> JudgedPixel {
+    const double sigma = std::hypot(match_sigmas.at<float>(y, x), motion_sigmas.at<float>(y, x));
+    return {sigma, rejection_at(y, x, sigma)};
+  };
+  return Finished(scene, inverse, judge);
 }
 
 Result<DenseDepth> DenseDepthEstimator::Estimate(const SurfaceView& reference,

@@ -14,7 +14,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kMinSigmaLevels = 0.05;  // of a chosen level
 constexpr int kRemotenessStepPx = 8;
 
 // By which sigmas are too small, of errors by them; at least 1.

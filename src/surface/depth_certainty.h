@@ -12,6 +12,8 @@
 
 namespace pliant {
 
+inline constexpr double kMinSigmaLevels = 0.05;  // of a chosen level: no match is more exact
+
 // How far the levels are apart that either half of the views alone chooses, CV_32FC1; 0 where there is one view.
 cv::Mat Disagreement(const SweepCosts& costs, int half, int threads);
 

@@ -75,6 +75,16 @@ TEST_F(DenseCompletenessTest, CountsWhatTwoOtherImagesSee) {
   EXPECT_FALSE(none->has_value());
 }
 
+TEST_F(DenseCompletenessTest, CountsFramesWithoutADepthThatWereCompared) {
+  SurfaceFolder surface = Surface(false);
+  surface.frames_without_depth = {{6, "", {4, 8}}, {9, "", {}}};
+  SeenIn others({3, 4, 7, 8});
+  const auto half = Compute(surface, &others);
+  ASSERT_TRUE(half.ok()) << half.status().message();
+  ASSERT_TRUE(half->has_value());
+  EXPECT_NEAR((*half)->known_share, 0.5, 0.01);
+}
+
 TEST_F(DenseCompletenessTest, DoesNotCountFilledHoles) {
   const SurfaceFolder surface = Surface(false);
   std::filesystem::create_directories(folder_.Path("filled"));

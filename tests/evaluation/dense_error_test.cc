@@ -186,7 +186,8 @@ TEST_F(DenseErrorTest, FramesWithoutADepthAreNotKnown) {
                 "\"note\": \"\"}, " +
                     failed + "]}");
   surface = *ReadSurfaceFolder(folder_.Path("."));
-  EXPECT_EQ(surface.frames_without_depth, std::vector<int>{3});
+  ASSERT_EQ(surface.frames_without_depth.size(), 1U);
+  EXPECT_EQ(surface.frames_without_depth[0].frame_idx, 3);
   EXPECT_NEAR(ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame)->known_share, 0.5, 0.01);
 }
 

@@ -3,6 +3,7 @@
 
 #include "pliant/pipeline/surface_run.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -11,12 +12,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/surface_neighbors.h"
-#include "pipeline/surface_writer.h"
+#include "pipeline/surface_notes.h"
 #include "pliant/base/folder_lock.h"
 #include "pliant/datasets/surface_folder.h"
+#include "pliant/io/run_map.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"
 
@@ -236,6 +239,46 @@ TEST_F(SurfaceRunTest, LeavesAFolderOfOtherThingsAlone) {
   EXPECT_EQ(folder_.Read("surface/depth/mine.png"), "mine");
 }
 
+TEST_F(SurfaceRunTest, SaysThatAMapIsProvisional) {
+  auto writer =
+      RunWriter::Create(folder_.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {});
+  ASSERT_TRUE(writer.ok()) << writer.status().message();
+  for (int frame = 0; frame < kRunFrames; ++frame) {
+    FrameReport report = Report(frame);
+    if (frame < 2) report.state = TrackingState::kProvisional;
+    ASSERT_TRUE(writer->Write(report).ok());
+  }
+  ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+  EXPECT_FALSE(Make(WriteImages(19)).ok());  // gray images have no depth
+  const auto json = nlohmann::json::parse(folder_.Read("surface/surface.json"));
+  std::vector<bool> provisional;
+  for (const auto& frame : json.at("frames")) provisional.push_back(frame.at("provisional").get<bool>());
+  EXPECT_THAT(provisional, ElementsAre(true, true, false, false, false));
+}
+
+TEST(SurfaceNotes, CountProvisionalFrames) {
+  EXPECT_EQ(ProvisionalWarning({{.frame_idx = 1}}), "");
+  EXPECT_THAT(ProvisionalWarning({{.frame_idx = 1}, {.frame_idx = 3, .provisional = true}}),
+              testing::StartsWith("1 of 2 frames are of a provisional map"));
+}
+
+TEST(SurfaceNotes, SayWhyMostPixelsHaveNoDepth) {
+  RejectedPixels rejected = {};
+  const auto reject = [&](DepthRejection why, int pixels) { rejected[static_cast<std::size_t>(why)] = pixels; };
+  reject(DepthRejection::kNotSurface, 1000);
+  EXPECT_THAT(NoteWithoutDepth(rejected, {}), HasSubstr("masks, highlights and the dark border leave no pixel"));
+  reject(DepthRejection::kDisagreement, 30);
+  EXPECT_EQ(NoteWithoutDepth(rejected, {}),
+            "the two halves of the other images tell different depths (100 % of the usable pixels); refine the run, or "
+            "raise Surface.max_disagreement");
+  reject(DepthRejection::kLittleParallax, 20);
+  reject(DepthRejection::kUncertain, 50);
+  EXPECT_THAT(
+      NoteWithoutDepth(rejected, {}),
+      testing::StartsWith("the other images show too little parallax for a depth with a sigma of 2.0 % (70 % of "
+                          "the usable pixels); take frames farther away (raise Surface.max_frames_apart, "));
+}
+
 // Frames of a camera that moves sideways by a millimeter each; every frame sees the points of `from` to `to`.
 std::vector<PosedFrame> Frames(int count, int points_lost_a_frame) {
   std::vector<PosedFrame> frames;
@@ -246,6 +289,16 @@ std::vector<PosedFrame> Frames(int count, int points_lost_a_frame) {
     frames.push_back(frame);
   }
   return frames;
+}
+
+TEST(SurfaceNotes, CountFramesWhosePointsRest) {
+  std::vector<PosedFrame> frames = Frames(3, 0);
+  RunMap run;
+  for (const PointObservation& seen : frames[0].observations) run.points[seen.id] = {seen.id, seen.position, {}};
+  frames[2].observations[7].position.y() += 0.1;  // 50 away
+  EXPECT_EQ(StillWarning(frames, {2}, run), "");
+  EXPECT_THAT(StillWarning(frames, {0, 2}, run),
+              testing::StartsWith("the run takes the scene as rigid in 1 of 2 frames: "));
 }
 
 TEST(SurfaceNeighbors, AreOnBothSidesAsFarAsPointsGo) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -93,11 +95,30 @@ TEST(DenseDepth, HasHolesWhereNothingIsToBeSeen) {
   EXPECT_LT(judged.median_error, 0.01);
 }
 
+int Rejected(const DenseDepth& dense, DepthRejection why) { return dense.rejected[static_cast<std::size_t>(why)]; }
+
+int AllPixels(const DenseDepth& dense) {
+  return cv::countNonZero(dense.depth > 0) + std::accumulate(dense.rejected.begin(), dense.rejected.end(), 0);
+}
+
 TEST(DenseDepth, ACameraThatStandsStillTellsNothing) {
   const TexturedPlane plane{.slide_mm = 1, .baseline_mm = 0};
   const auto dense = Estimate(plane, plane.View(0), plane.Neighbors());
   ASSERT_TRUE(dense.ok()) << dense.status().message();
   EXPECT_EQ(cv::countNonZero(dense->depth > 0), 0);
+  EXPECT_GT(Rejected(*dense, DepthRejection::kLittleParallax), AllPixels(*dense) / 2);
+}
+
+TEST(DenseDepth, EveryPixelHasADepthOrAReasonForNone) {
+  const TexturedPlane plane{.noise_levels = 2};
+  SurfaceView reference = plane.View(0);
+  const cv::Rect tool(60, 60, 80, 50);
+  reference.valid(tool).setTo(0);
+  const auto dense = Estimate(plane, reference, plane.Neighbors());
+  ASSERT_TRUE(dense.ok()) << dense.status().message();
+  EXPECT_EQ(AllPixels(*dense), TexturedPlane::kWidth * TexturedPlane::kHeight);
+  EXPECT_EQ(Rejected(*dense, DepthRejection::kNotSurface), tool.area());
+  EXPECT_EQ(Rejected(*dense, DepthRejection::kLittleParallax), 0);
 }
 
 TEST(DenseDepth, IsTheSameOnAnyNumberOfThreads) {

@@ -30,7 +30,7 @@ inline constexpr double kConfidenceUnit = 1.0 / 65535.0;  // of a standard devia
 struct SurfaceFolder {
   struct Frame {
     int frame_idx = 0;
-    std::string file_name;       // in depth/ and confidence/
+    std::string file_name;       // in depth/ and confidence/; empty: it has no depth
     std::vector<int> neighbors;  // frames that it was compared with
     bool has_pair = false;       // it was compared with its right image instead
   };
@@ -38,11 +38,11 @@ struct SurfaceFolder {
   std::filesystem::path path;
   std::filesystem::path run;  // that it was made of, absolute; empty: it does not say
   Camera camera;
-  double depth_scale = 1;                      // map units
-  std::vector<Frame> frames;                   // that have a depth
-  std::optional<ComparedWindows> windows;      // nothing: it does not say
-  std::vector<int> frames_without_depth = {};  // that were chosen, too
-  std::string trajectory_checksum = {};        // TrajectoryChecksum of the run; empty: an earlier version's
+  double depth_scale = 1;                        // map units
+  std::vector<Frame> frames;                     // that have a depth
+  std::optional<ComparedWindows> windows;        // nothing: it does not say
+  std::vector<Frame> frames_without_depth = {};  // that were chosen, too; without files
+  std::string trajectory_checksum = {};          // TrajectoryChecksum of the run; empty: an earlier version's
 };
 
 struct SurfaceDepth {

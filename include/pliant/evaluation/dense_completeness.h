@@ -18,10 +18,11 @@ namespace pliant {
 // Every fourth pixel of every fourth row that has a true depth is looked at. A depth can be expected where the pixel is
 // usable (`masks`), has texture (V16), and where the tissue that it shows is truly seen by at least two of the images
 // that the frame was compared with (by one, where it was compared with one): by the material's truth; of a pair, the
-// right image, by the true depth. Means over the frames that have such pixels. `images` is read from its beginning;
-// `material` may be null. Nothing where the surface does not say how its images were compared, no frame has such
-// pixels, or nothing says what other images see. Fails as Sequence, ReadSurfaceDepth and MaterialTruth, and with
-// kMismatch where true depth and surface have different sizes.
+// right image, by the true depth. Means over the frames that have such pixels, also those that were compared with
+// others and have no depth. `images` is read from its beginning; `material` may be null. Nothing where the surface does
+// not say how its images were compared, no frame has such pixels, or nothing says what other images see. Fails as
+// Sequence, ReadSurfaceDepth and MaterialTruth, and with kMismatch where true depth and surface have different sizes,
+// or the sequence lacks frames that others were compared with.
 Result<std::optional<DenseCompleteness>> ComputeDenseCompleteness(const SurfaceFolder& surface, Sequence* images,
                                                                   MaterialTruth* material, const MaskOptions& masks);
 

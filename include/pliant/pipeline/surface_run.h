@@ -54,7 +54,7 @@ struct SurfaceRequest {
 struct SurfaceFrame {
   int frame_idx = 0;
   std::string name = {};            // of its files, with the ending .png
-  bool provisional = false;         // as its map was
+  bool provisional = false;         // its map is (TrackingState)
   std::vector<int> neighbors = {};  // frames
   bool has_pair = false;            // it was compared with its right image, not with neighbors
   double known_share = 0;           // of the image's valid pixels, that have a depth
@@ -68,7 +68,9 @@ struct SurfaceSummary {
   ComparedWindows windows;
   std::vector<SurfaceFrame> frames;
   bool stopped = false;
-  std::vector<std::string> warnings = {};  // of chosen frames that are not in the run, or were not tracked; sentences
+  // Sentences, of chosen frames that are not in the run or were not tracked, of other images, of a provisional map, of
+  // points that rest, of a mesh that is not there.
+  std::vector<std::string> warnings = {};
 };
 
 enum class SurfaceStage {

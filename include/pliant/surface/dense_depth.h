@@ -7,6 +7,8 @@
 // none.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -48,9 +50,28 @@ struct TrackedImage {
   double noise_levels = 0;  // standard deviation of its gray levels; 0: unknown
 };
 
+// Why a pixel has no depth: the first of these that holds.
+enum class DepthRejection {
+  kNotSurface,      // a mask, a highlight, the dark border
+  kUnseen,          // no other image shows it, or nothing like it
+  kLittleParallax,  // so little that no match is exact enough for max_sigma
+  kNoMinimum,       // no depth is better than others: no texture
+  kOutermost,       // the best depth is as far from that of the points as any that is tried
+  kNearContour,     // a window sees surfaces of different depth
+  kDisagreement,    // the two halves of the images tell different depths
+  kUnlike,          // the windows differ at all depths
+  kUncertain,       // sigma is above max_sigma
+  kSpeckle,         // a small piece alone
+};
+inline constexpr std::size_t kDepthRejections = 10;
+
+// In pixels of the images that are compared, each reason at its place.
+using RejectedPixels = std::array<int, kDepthRejections>;
+
 struct DenseDepth {
   cv::Mat depth;  // CV_32FC1, the camera's size, z along the optical axis, map units; 0 = none
   cv::Mat sigma;  // CV_32FC1, standard deviation of the depth by the depth; 0 = none
+  RejectedPixels rejected = {};
 };
 
 class DenseDepthEstimator {
