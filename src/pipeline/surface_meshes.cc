@@ -116,6 +116,7 @@ class MeshMaker {
   }
 
   bool stopped() const { return stopped_; }
+  bool has_mesh() const { return !mesh_.triangles.empty(); }
 
  private:
   // Points that the run's map does not have, as that of a killed run, rest where they were seen first.
@@ -239,22 +240,25 @@ class MeshMaker {
 
 }  // namespace
 
-Result<bool> MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads,
-                        const MeshProgress& go_on) {
+Result<MadeMeshes> MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads,
+                              const MeshProgress& go_on) {
   const auto submaps = DenseFramesBySubmap(source);
+  MadeMeshes made;
+  made.submaps = static_cast<int>(submaps.size());
   int total = 0;
   for (const auto& frames : submaps) total += 2 * static_cast<int>(frames.size());
-  if (!go_on(0, total)) return false;
+  made.stopped = !go_on(0, total);
   int done = 0;
   const std::function<bool()> step = [&] { return go_on(++done, total); };
-  for (std::size_t k = 0; k < submaps.size(); ++k) {
+  for (std::size_t k = 0; k < submaps.size() && !made.stopped; ++k) {
     const std::string suffix = submaps.size() > 1 ? "_" + std::to_string(k) : "";
     MeshWriter writer(source.folder.path, suffix, {.obj = options.obj, .vtk = options.vtk});
     MeshMaker maker(source, options, threads, submaps[k], step);
     if (Status status = maker.Make(&writer); !status.ok()) return status;
-    if (maker.stopped()) return false;
+    made.stopped = maker.stopped();
+    made.meshes += maker.has_mesh() ? 1 : 0;
   }
-  return true;
+  return made;
 }
 
 }  // namespace pliant

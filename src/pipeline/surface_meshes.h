@@ -30,10 +30,15 @@ struct MeshSource {
 // Told how many of how many steps are done; false: no more are wanted.
 using MeshProgress = std::function<bool(int done, int total)>;
 
-// A mesh of all that the frames of a submap show, and where it is in each of these. False where no more was wanted
-// before the end: files of frames are whole then, but not all there. Fails as RunViews and ReadSurfaceDepth do, and
-// with kUnwritable.
-Result<bool> MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads,
-                        const MeshProgress& go_on);
+struct MadeMeshes {
+  bool stopped = false;  // no more was wanted before the end: files of frames are whole, but not all there
+  int submaps = 0;       // that have a depth
+  int meshes = 0;        // of these; fewer where the depths of a submap give no piece that is large enough
+};
+
+// A mesh of all that the frames of a submap show, and where it is in each of these. Fails as RunViews and
+// ReadSurfaceDepth do, and with kUnwritable.
+Result<MadeMeshes> MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads,
+                              const MeshProgress& go_on);
 
 }  // namespace pliant

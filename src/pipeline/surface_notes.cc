@@ -150,4 +150,15 @@ std::string StillWarning(const std::vector<PosedFrame>& frames, const std::vecto
          " frames: displacement and strain of the mesh are 0 there, whatever the tissue did";
 }
 
+std::string MeshWarning(const MadeMeshes& made, const SurfaceRunOptions& options) {
+  if (options.mesh_columns == 0)
+    return options.obj ? "there is no obj/ without a mesh, which Surface.mesh_columns 0 leaves out" : "";
+  if (made.stopped || made.meshes == made.submaps) return {};
+  const std::string where = made.submaps > 1 ? " of " + std::to_string(made.submaps - made.meshes) + " of " +
+                                                   std::to_string(made.submaps) + " submaps"
+                                             : "";
+  return "there is no mesh" + where + ": its depths give no connected piece of enough triangles; raise " +
+         "Surface.mesh_columns (" + std::to_string(options.mesh_columns) + ")";
+}
+
 }  // namespace pliant

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/run_views.h"
+#include "pipeline/surface_meshes.h"
 #include "pliant/base/status.h"
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
@@ -37,5 +38,7 @@ std::string ProvisionalWarning(const std::vector<SurfaceFrame>& frames);
 // Of the chosen frames, by their positions, whose points rest where they were seen first; empty where none do.
 std::string StillWarning(const std::vector<PosedFrame>& frames, const std::vector<std::size_t>& chosen,
                          const RunMap& run);
+// Of files of a mesh that are wanted and not there; empty where none are.
+std::string MeshWarning(const MadeMeshes& made, const SurfaceRunOptions& options);
 
 }  // namespace pliant

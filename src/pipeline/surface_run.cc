@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -204,12 +203,6 @@ class SurfaceMaker {
   SurfaceWriter* writer_;
 };
 
-bool HasMesh(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::directory_iterator meshes(std::filesystem::path(path) / surface::kMeshFolder, error);
-  return !error && meshes != std::filesystem::directory_iterator();
-}
-
 // Those that say something.
 void AddWarnings(const std::vector<std::string>& warnings, SurfaceSummary* summary) {
   std::ranges::copy_if(warnings, std::back_inserter(summary->warnings),
@@ -224,23 +217,25 @@ struct MeshInput {
   const Run& run;
 };
 
+// None where none are wanted.
 Status AddMeshes(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceProgress& callback,
                  const MeshInput& input, SurfaceSummary* summary) {
-  const auto folder = ReadSurfaceFolder(request.output_path);
-  if (!folder.ok()) return folder.status();
-  const std::set<int> chosen(request.frames.begin(), request.frames.end());
-  const MeshSource meshes{input.frames, input.known, *folder, input.source, input.run.frames, chosen};
-  const auto go_on = [&](int done, int total) {
-    if (callback) callback(SurfaceStage::kMesh, done, total, 0.0);
-    return request.stop == nullptr || !*request.stop;
-  };
-  const auto finished = MakeMeshes(meshes, options, ThreadsOf(options), go_on);
-  if (!finished.ok()) return finished.status();
-  summary->stopped = !*finished;
-  if (*finished && !HasMesh(request.output_path))
-    summary->warnings.push_back(
-        "there is no mesh: its vertices are too far apart, or too few pixels have a depth, for a triangle; raise "
-        "Surface.mesh_columns");
+  MadeMeshes made;
+  if (options.mesh_columns > 0) {
+    const auto folder = ReadSurfaceFolder(request.output_path);
+    if (!folder.ok()) return folder.status();
+    const std::set<int> chosen(request.frames.begin(), request.frames.end());
+    const MeshSource meshes{input.frames, input.known, *folder, input.source, input.run.frames, chosen};
+    const auto go_on = [&](int done, int total) {
+      if (callback) callback(SurfaceStage::kMesh, done, total, 0.0);
+      return request.stop == nullptr || !*request.stop;
+    };
+    const auto result = MakeMeshes(meshes, options, ThreadsOf(options), go_on);
+    if (!result.ok()) return result.status();
+    made = *result;
+  }
+  summary->stopped = made.stopped;
+  AddWarnings({MeshWarning(made, options)}, summary);
   return Status::Ok();
 }
 
@@ -318,10 +313,8 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
     return Status(ErrorCode::kInsufficient,
                   "no frame has a depth: " + (images.AreOfOtherImages() ? kOtherImages : ReasonOf(summary.frames)));
   if (stopped) return summary;
-  summary.stopped = false;
-  if (options.mesh_columns > 0)
-    if (Status status = AddMeshes(request, options, callback, {*frames, *known, source, *run}, &summary); !status.ok())
-      return status;
+  if (Status status = AddMeshes(request, options, callback, {*frames, *known, source, *run}, &summary); !status.ok())
+    return status;
   if (Status status = writer->Finish(request, options, summary); !status.ok()) return status;
   return summary;
 }

@@ -108,6 +108,15 @@ TEST_F(SurfaceFiles, AreThoseThatAreWanted) {
     EXPECT_FALSE(Has(name)) << name;
 }
 
+TEST_F(SurfaceFiles, OfAMeshThatIsTooCoarseAreMissedAloud) {
+  SurfaceRunOptions options;
+  options.mesh_columns = 1;
+  const auto summary = Make(options);
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_THAT(summary->warnings, testing::Contains(testing::StartsWith("there is no mesh: ")));
+  EXPECT_FALSE(Has("surface.glb"));
+}
+
 TEST_F(SurfaceFiles, AreThoseOfFramesThatTheRunHas) {
   SurfaceRunOptions options;
   options.mesh_columns = 0;

@@ -262,6 +262,21 @@ TEST(SurfaceNotes, CountProvisionalFrames) {
               testing::StartsWith("1 of 2 frames are of a provisional map"));
 }
 
+TEST(SurfaceNotes, SayThatThereIsNoMesh) {
+  SurfaceRunOptions options;
+  EXPECT_EQ(MeshWarning({.submaps = 2, .meshes = 2}, options), "");
+  EXPECT_EQ(MeshWarning({.stopped = true, .submaps = 2, .meshes = 0}, options), "");
+  EXPECT_THAT(MeshWarning({.submaps = 2, .meshes = 1}, options),
+              testing::StartsWith("there is no mesh of 1 of 2 submaps: "));
+  options.mesh_columns = 1;
+  EXPECT_EQ(MeshWarning({.submaps = 1}, options),
+            "there is no mesh: its depths give no connected piece of enough triangles; raise Surface.mesh_columns (1)");
+  options.mesh_columns = 0;
+  EXPECT_EQ(MeshWarning({}, options), "");
+  options.obj = true;
+  EXPECT_THAT(MeshWarning({}, options), HasSubstr("there is no obj/ without a mesh"));
+}
+
 TEST(SurfaceNotes, SayWhyMostPixelsHaveNoDepth) {
   RejectedPixels rejected = {};
   const auto reject = [&](DepthRejection why, int pixels) { rejected[static_cast<std::size_t>(why)] = pixels; };
