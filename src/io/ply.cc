@@ -39,7 +39,8 @@ Status WritePly(const std::string& path, const Mesh& mesh) {
                     "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
                     "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
                     "property float sigma\n" +
-                    (mesh.ids.empty() ? "" : "property int vertex\n") + "element face " +
+                    (mesh.ids.empty() ? "" : "property int vertex\n") +
+                    (mesh.views.empty() ? "" : "property uchar view\n") + "element face " +
                     std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     for (const float coordinate : mesh.vertices[v]) AppendFloat(&out, coordinate);
@@ -47,6 +48,7 @@ Status WritePly(const std::string& path, const Mesh& mesh) {
     for (const std::uint8_t channel : mesh.rgb[v]) AppendBytes(&out, channel, 1);
     AppendFloat(&out, mesh.sigmas[v]);
     if (!mesh.ids.empty()) AppendBytes(&out, static_cast<std::uint32_t>(mesh.ids[v]), 4);
+    if (!mesh.views.empty()) AppendBytes(&out, mesh.views[v], 1);
     if (Status status = file->AppendWhenLarge(&out); !status.ok()) return status;
   }
   for (const auto& triangle : mesh.triangles) {

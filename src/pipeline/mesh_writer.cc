@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <system_error>
 #include <utility>
 
@@ -79,6 +80,7 @@ Mesh DeformedMesh::SeenPart() const {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     mesh.vertices[v] = (cam_from_world * now.positions[v]).cast<float>();
     mesh.ids.push_back(static_cast<std::int32_t>(v));
+    mesh.views.push_back(static_cast<std::uint8_t>(now.views[v]));
     seen.push_back(now.views[v] != VertexView::kOutOfView);
   }
   mesh.sigmas = now.sigmas;

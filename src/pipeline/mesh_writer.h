@@ -25,7 +25,7 @@ struct DeformedMesh {
   double timestamp_s = 0;
 
   std::vector<Eigen::Vector3f> Vertices() const;  // world frame
-  Mesh SeenPart() const;                          // camera frame, with ids: what the frame shows of it
+  Mesh SeenPart() const;                          // camera frame, with ids and views: what the frame shows of it
   Mesh Whole() const;                             // world frame
 };
 

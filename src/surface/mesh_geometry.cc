@@ -73,6 +73,7 @@ Mesh PartOfMesh(const Mesh& mesh, const std::vector<bool>& keep) {
     if (!mesh.rgb.empty()) part.rgb.push_back(mesh.rgb[v]);
     if (!mesh.sigmas.empty()) part.sigmas.push_back(mesh.sigmas[v]);
     if (!mesh.ids.empty()) part.ids.push_back(mesh.ids[v]);
+    if (!mesh.views.empty()) part.views.push_back(mesh.views[v]);
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     Triangle moved{};

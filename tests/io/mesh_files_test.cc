@@ -375,6 +375,17 @@ TEST_F(MeshFilesTest, PlyHasTheVerticesIds) {
   EXPECT_EQ(id, 300);
 }
 
+TEST_F(MeshFilesTest, PlyHasTheVerticesViews) {
+  mesh_.ids = {7, 8, 9, 300};
+  mesh_.views = {1, 2, 1, 2};
+  ASSERT_TRUE(WritePly(folder_.Path("a.ply"), mesh_).ok());
+  const std::string text = folder_.Read("a.ply");
+  EXPECT_THAT(text, HasSubstr("property int vertex\nproperty uchar view\nelement face 2\n"));
+  // 35 bytes a vertex before its view.
+  for (std::size_t v = 0; v < 4; ++v)
+    EXPECT_EQ(text[text.find("end_header\n") + 11 + 36 * v + 35], static_cast<char>(mesh_.views[v])) << v;
+}
+
 TEST_F(MeshFilesTest, WhatCannotBeWrittenIsSaid) {
   const std::string nowhere = folder_.Path("nowhere/a");
   EXPECT_EQ(WriteGlb(nowhere, {mesh_, texture_, keys_, path_, camera_, 3}).code(), ErrorCode::kUnwritable);

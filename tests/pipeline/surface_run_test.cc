@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "pipeline/mesh_writer.h"
 #include "pipeline/surface_neighbors.h"
 #include "pipeline/surface_notes.h"
 #include "pliant/base/folder_lock.h"
@@ -292,6 +293,18 @@ TEST(SurfaceNotes, SayWhyMostPixelsHaveNoDepth) {
       NoteWithoutDepth(rejected, {}),
       testing::StartsWith("the other images show too little parallax for a depth with a sigma of 2.0 % (70 % of "
                           "the usable pixels); take frames farther away (raise Surface.max_frames_apart, "));
+}
+
+TEST(DeformedMesh, TheSeenPartSaysWhereTheFrameItselfHasADepth) {
+  Mesh mesh;
+  mesh.vertices.assign(4, Eigen::Vector3f::Zero());
+  mesh.triangles = {{0, 1, 2}, {1, 2, 3}};
+  const MeshInFrame now{{{0, 0, 5}, {2, 0, 5}, {0, 2, 5}, {2, 2, 5}},
+                        {1, 1, 1, 1},
+                        {VertexView::kOutOfView, VertexView::kMeasured, VertexView::kInView, VertexView::kMeasured}};
+  const Mesh seen = DeformedMesh{mesh, now, {}}.SeenPart();
+  EXPECT_THAT(seen.ids, ElementsAre(1, 2, 3));
+  EXPECT_THAT(seen.views, ElementsAre(2, 1, 2));
 }
 
 // Frames of a camera that moves sideways by a millimeter each; every frame sees the points of `from` to `to`.

@@ -28,12 +28,15 @@ TEST(MeshGeometry, NormalsAreThoseOfTheTrianglesByTheirArea) {
 }
 
 TEST(MeshGeometry, APartHasWhatIsKnownOfItsVertices) {
-  Mesh mesh{Square(), Square(), {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}}, {1, 2, 3, 4}, {10, 11, 12, 13}, kTwo, {}};
+  Mesh mesh{
+      Square(), Square(), {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}}, {1, 2, 3, 4}, {10, 11, 12, 13}, {1, 2, 1, 2},
+      kTwo,     {}};
   mesh.texture_uvs.resize(2);
   mesh.texture_uvs[1][0] = {0.5F, 0.5F};
   const Mesh part = PartOfMesh(mesh, {false, true, true, true});
   EXPECT_THAT(part.ids, ElementsAre(11, 12, 13));
   EXPECT_THAT(part.sigmas, ElementsAre(2, 3, 4));
+  EXPECT_THAT(part.views, ElementsAre(2, 1, 2));
   EXPECT_THAT(part.triangles, ElementsAre(Triangle{0, 2, 1}));
   EXPECT_EQ(part.vertices[2], Eigen::Vector3f(2, 2, 5));
   EXPECT_EQ(part.rgb[0][0], 2);

@@ -18,8 +18,8 @@ namespace pliant {
 // `sigmas` has one entry a point, 0 where it is not known, or none. Fails with kUnwritable.
 Status WritePly(const std::string& path, std::span<const NewPoint> points, std::span<const double> sigmas = {});
 
-// A mesh: beside that of a point, nx ny nz float and, where it has ids, vertex int of every vertex, and faces as lists
-// of vertex_indices. Fails with kUnwritable.
+// A mesh: beside that of a point, nx ny nz float and, where it has ids or views, vertex int and view uchar of every
+// vertex, and faces as lists of vertex_indices. Fails with kUnwritable.
 Status WritePly(const std::string& path, const Mesh& mesh);
 
 }  // namespace pliant

@@ -18,6 +18,7 @@ struct Mesh {
   std::vector<std::array<std::uint8_t, 3>> rgb;  // a vertex each
   std::vector<float> sigmas;                     // a vertex each: standard deviation of the distance from the camera
   std::vector<std::int32_t> ids;                 // a vertex each: the same in every frame; empty where it has none
+  std::vector<std::uint8_t> views;               // a vertex each: VertexView in a frame; empty where it is of none
   std::vector<std::array<std::int32_t, 3>> triangles;  // indices of vertices
   // A triangle each: where its corners are in a texture image, 0 to 1, from the image's upper left corner; empty where
   // there is none.
