@@ -48,8 +48,8 @@ SequenceRequest SequenceArguments::Request() const {
 }
 
 void AddCameraOfRun(CommandLine* line, std::string* camera_path) {
-  line->Add("camera", camera_path, "FILE", "their calibration; without it the one that belongs to them",
-            Need::kOptional);
+  line->Add("camera", camera_path, "FILE",
+            "their calibration, which has to be the run's; without it the one that belongs to them", Need::kOptional);
 }
 
 void AddSequenceOfKilledRun(CommandLine* line, std::string* sequence_path, std::string* camera_path) {

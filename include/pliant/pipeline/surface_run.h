@@ -43,7 +43,7 @@ struct SurfaceRunOptions {
 struct SurfaceRequest {
   std::string run_path;
   std::string sequence_path;                // the run's images; empty: those that its run.json names
-  std::string camera_path;                  // their calibration; empty: the one that belongs to them
+  std::string camera_path;                  // their calibration, the run's; empty: the one that belongs to them
   std::string mask_path;                    // as of a SequenceRequest
   std::string output_path;                  // a folder, made if need be
   std::vector<int> frames = {};             // numbers in the sequence; empty: all that were tracked
