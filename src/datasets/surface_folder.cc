@@ -15,7 +15,6 @@
 #include "pliant/base/text.h"
 #include "pliant/datasets/native_layout.h"
 #include "pliant/io/camera_file.h"
-#include "pliant/io/point_cloud.h"
 #include "pliant/io/run_reader.h"
 
 namespace pliant {
@@ -183,14 +182,11 @@ void SurfaceDepth::KeepMeasured() {
   filled.release();
 }
 
-Result<std::vector<Eigen::Vector3d>> ReadSurfaceVertices(const SurfaceFolder& folder,
-                                                         const SurfaceFolder::Frame& frame) {
+Result<PlyVertices> ReadSurfaceVertices(const SurfaceFolder& folder, const SurfaceFolder::Frame& frame) {
   const std::filesystem::path path =
       folder.path / surface::kMeshFolder / std::filesystem::path(frame.file_name).replace_extension(".ply");
-  if (!Exists(path.string())) return std::vector<Eigen::Vector3d>();
-  auto vertices = ReadPointCloud(path.string());
-  if (!vertices.ok() && vertices.status().code() == ErrorCode::kInsufficient) return std::vector<Eigen::Vector3d>();
-  return vertices;
+  if (!Exists(path.string())) return PlyVertices();
+  return ReadPlyVertices(path.string());
 }
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 #include "pliant/evaluation/dense_error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -35,6 +36,7 @@ struct Pixels {
   // Of the mesh's vertices: those at pixels with a depth of the frame's own come first.
   std::vector<double> vertex_truth_mm;
   std::vector<double> vertex_estimate;
+  std::vector<double> vertex_sigma;  // by the distance; empty: the mesh has none
   std::size_t vertices_with_depth = 0;
 
   std::size_t Vertices(bool with_depth) const {
@@ -64,16 +66,19 @@ Pixels PixelsOf(const SurfaceDepth& dense, const cv::Mat& truth_mm, const std::o
   return pixels;
 }
 
-void AddVertices(const Camera& camera, const std::vector<Eigen::Vector3d>& vertices, const SurfaceDepth& dense,
-                 const cv::Mat& truth_mm, Pixels* pixels) {
+void AddVertices(const Camera& camera, const PlyVertices& vertices, const SurfaceDepth& dense, const cv::Mat& truth_mm,
+                 Pixels* pixels) {
   for (const bool with_depth : {true, false}) {
-    for (const Eigen::Vector3d& vertex : vertices) {
+    for (std::size_t v = 0; v < vertices.positions.size(); ++v) {
+      const Eigen::Vector3d& vertex = vertices.positions[v];
+      if (!vertex.allFinite()) continue;
       const auto pixel = camera.Project(vertex);
       if (!pixel || !camera.Contains(*pixel)) continue;
       const cv::Point at(static_cast<int>(std::lround(pixel->x())), static_cast<int>(std::lround(pixel->y())));
       if (!(truth_mm.at<float>(at) > 0.0F) || (dense.depth.at<float>(at) > 0.0F) != with_depth) continue;
       pixels->vertex_truth_mm.push_back(truth_mm.at<float>(at));
       pixels->vertex_estimate.push_back(vertex.z());
+      if (!vertices.sigmas.empty()) pixels->vertex_sigma.push_back(vertices.sigmas[v] / vertex.norm());
     }
     if (with_depth) pixels->vertices_with_depth = pixels->vertex_truth_mm.size();
   }
@@ -150,17 +155,13 @@ struct FrameScale {
   double scale = 1;          // of the surface's depths
   double interpolation = 1;  // of those that are interpolated between the points; 0: there are none
   bool has_filled = false;
-  bool has_vertices = false;
-  bool has_vertices_alone = false;
 };
 
 FrameScale ScaleOfFrame(const Pixels& pixels, int submap) {
   return {.submap = submap,
           .scale = ScaleOf(pixels.estimate, pixels.truth_mm),
           .interpolation = pixels.interpolation.empty() ? 0.0 : ScaleOf(pixels.interpolation, pixels.truth_mm),
-          .has_filled = !pixels.filled_truth_mm.empty(),
-          .has_vertices = pixels.Vertices(true) > 0,
-          .has_vertices_alone = pixels.Vertices(false) > 0};
+          .has_filled = !pixels.filled_truth_mm.empty()};
 }
 
 // One scale a submap, the median of its frames', for the depths that `of` gives.
@@ -181,9 +182,43 @@ void SetScales(ErrorScale scale, std::vector<FrameScale>* frames) {
       for (FrameScale& frame : *frames) frame.*of = frame.*of > 0 ? 1.0 : 0.0;
 }
 
-std::ptrdiff_t CountOf(const std::vector<FrameScale>& frames, bool FrameScale::*what) {
-  return std::ranges::count(frames, true, what);
-}
+// The figures of one frame's vertices after the other.
+class VertexSum {
+ public:
+  // Of the vertices whose frame has a depth of its own there, or of the others.
+  void Add(const Pixels& pixels, double scale, bool with_depth) {
+    if (pixels.Vertices(with_depth) == 0) return;
+    std::vector<bool> counts(pixels.vertex_truth_mm.size());
+    for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = (i < pixels.vertices_with_depth) == with_depth;
+    const auto estimate = [&](std::size_t i) { return scale * pixels.vertex_estimate[i]; };
+    AddFigures(FiguresOf(pixels.vertex_truth_mm, estimate, counts), &depth_);
+    ++frames_;
+    if (pixels.vertex_sigma.empty()) return;
+    ++frames_with_sigma_;
+    const auto all = static_cast<double>(pixels.Vertices(with_depth));
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      if (!counts[i]) continue;
+      const double error = std::abs(estimate(i) - pixels.vertex_truth_mm[i]) / estimate(i);
+      for (std::size_t k = 0; k < 2; ++k)
+        within_[k] += error < static_cast<double>(k + 1) * pixels.vertex_sigma[i] ? 1.0 / all : 0.0;
+    }
+  }
+
+  // Nothing: there were none.
+  std::optional<VertexFigures> Mean() const {
+    if (frames_ == 0) return std::nullopt;
+    VertexFigures figures{MeanFigures(depth_, frames_), std::nullopt};
+    if (frames_with_sigma_ > 0)
+      figures.within_sigma = {within_[0] / frames_with_sigma_, within_[1] / frames_with_sigma_};
+    return figures;
+  }
+
+ private:
+  DepthFigures depth_;  // sums
+  std::array<double, 2> within_ = {};
+  int frames_ = 0;
+  int frames_with_sigma_ = 0;
+};
 
 // The figures of one frame after the other.
 class DenseErrorSum {
@@ -199,8 +234,8 @@ class DenseErrorSum {
   void Add(const Pixels& pixels, const FrameScale& scale) {
     AddDepths(pixels, scale);
     AddFilled(pixels, scale.scale);
-    AddMesh(pixels, scale.scale, /*with_depth=*/true, &mesh_);
-    AddMesh(pixels, scale.scale, /*with_depth=*/false, &mesh_alone_);
+    mesh_.Add(pixels, scale.scale, /*with_depth=*/true);
+    mesh_alone_.Add(pixels, scale.scale, /*with_depth=*/false);
     vertices_ += static_cast<double>(pixels.vertex_truth_mm.size());
     vertices_alone_ += static_cast<double>(pixels.Vertices(false));
   }
@@ -212,9 +247,9 @@ class DenseErrorSum {
     error_.interpolation =
         MeanOfSome(interpolation_,
                    std::ranges::count_if(frames_, [](const FrameScale& frame) { return frame.interpolation > 0; }));
-    error_.filled = MeanOfSome(filled_, CountOf(frames_, &FrameScale::has_filled));
-    error_.mesh = MeanOfSome(mesh_, CountOf(frames_, &FrameScale::has_vertices));
-    error_.mesh_alone = MeanOfSome(mesh_alone_, CountOf(frames_, &FrameScale::has_vertices_alone));
+    error_.filled = MeanOfSome(filled_, std::ranges::count(frames_, true, &FrameScale::has_filled));
+    error_.mesh = mesh_.Mean();
+    error_.mesh_alone = mesh_alone_.Mean();
     for (double* share : {&error_.within_1_sigma, &error_.within_2_sigma, &error_.filled_share}) *share /= frames;
     error_.known_share /= all_frames_;
     for (double& share : error_.complete_mm) share /= all_frames_;
@@ -226,26 +261,17 @@ class DenseErrorSum {
  private:
   void AddDepths(const Pixels& pixels, const FrameScale& scale);
   void AddFilled(const Pixels& pixels, double scale);
-  static void AddMesh(const Pixels& pixels, double scale, bool with_depth, DepthFigures* figures);
 
   const std::vector<FrameScale>& frames_;
   double all_frames_;
   DenseError error_;
   DepthFigures interpolation_;  // sums
   DepthFigures filled_;
-  DepthFigures mesh_;
-  DepthFigures mesh_alone_;
+  VertexSum mesh_;
+  VertexSum mesh_alone_;
   double vertices_ = 0.0;
   double vertices_alone_ = 0.0;
 };
-
-void DenseErrorSum::AddMesh(const Pixels& pixels, double scale, bool with_depth, DepthFigures* figures) {
-  if (pixels.Vertices(with_depth) == 0) return;
-  std::vector<bool> counts(pixels.vertex_truth_mm.size());
-  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = (i < pixels.vertices_with_depth) == with_depth;
-  const auto estimate = [&](std::size_t i) { return scale * pixels.vertex_estimate[i]; };
-  AddFigures(FiguresOf(pixels.vertex_truth_mm, estimate, counts), figures);
-}
 
 // The pixels that were filled.
 void DenseErrorSum::AddFilled(const Pixels& pixels, double scale) {

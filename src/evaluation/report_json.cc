@@ -96,6 +96,15 @@ Json ToJson(const DepthFigures& f) {
 // Null: there was nothing to measure.
 Json OrNull(const std::optional<DepthFigures>& figures) { return figures ? ToJson(*figures) : Json(); }
 
+Json OrNull(const std::optional<VertexFigures>& figures) {
+  if (!figures) return {};
+  Json json = ToJson(figures->depth);
+  const auto& within = figures->within_sigma;
+  json["within_1_sigma"] = within ? Json((*within)[0]) : Json();
+  json["within_2_sigma"] = within ? Json((*within)[1]) : Json();
+  return json;
+}
+
 Json ToJson(const DenseError& e) {
   Json json = {{"scale", EnumName(e.scale)},
                {"frames_compared", e.frames},

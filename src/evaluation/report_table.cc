@@ -64,6 +64,16 @@ std::string DenseRow(const char* what, const DepthFigures& f) {
 
 std::string DenseRow(const char* what, const std::optional<DepthFigures>& f) { return f ? DenseRow(what, *f) : ""; }
 
+std::string DenseRow(const char* what, const std::optional<VertexFigures>& f) {
+  return f ? DenseRow(what, f->depth) : "";
+}
+
+std::string SigmaRow(const char* what, const std::optional<VertexFigures>& f) {
+  if (!f || !f->within_sigma) return "";
+  return FormatText("  %s: within 1 sigma %.1f %%, 2 sigma %.1f %%\n", what, 100 * (*f->within_sigma)[0],
+                    100 * (*f->within_sigma)[1]);
+}
+
 std::string DenseTable(const DenseError& e) {
   const std::string without =
       e.frames_without_depth > 0 ? FormatText(", %d more have no depth", e.frames_without_depth) : "";
@@ -81,7 +91,8 @@ std::string DenseTable(const DenseError& e) {
          DenseRow("one constant depth", e.null) +
          FormatText("  known to 1, 2, 5 mm: %.1f, %.1f, %.1f %%; within 1 sigma %.1f %%, 2 sigma %.1f %%\n",
                     100 * e.complete_mm[0], 100 * e.complete_mm[1], 100 * e.complete_mm[2], 100 * e.within_1_sigma,
-                    100 * e.within_2_sigma);
+                    100 * e.within_2_sigma) +
+         SigmaRow("mesh, where it is known", e.mesh) + SigmaRow("mesh elsewhere", e.mesh_alone);
 }
 
 std::string MaterialTable(const MaterialError& e) {

@@ -118,19 +118,26 @@ TEST_F(DenseErrorTest, TheMeshIsComparedWhereTheFrameHasADepthAndElsewhere) {
   std::filesystem::create_directories(folder_.Path("mesh"));
   for (const int k : {2, 5}) {
     std::vector<NewPoint> vertices;
+    std::vector<double> sigmas;
     const cv::Mat& depth = Rendered().frames[static_cast<std::size_t>(k)].depth;
     for (int x = 0; x < depth.cols; x += 8) {
       const Eigen::Vector3d ray = *Rendered().camera.Unproject({x, 40});
       const double wrong = x < depth.cols / 4 ? 1.1 : 1.02;
       vertices.push_back({PointId{x}, wrong * depth.at<float>(40, x) / ray.z() * ray});
+      // Errors of 0.02 / 1.02 and 0.1 / 1.1 of the distance are 0.65 and 1.5 sigma.
+      sigmas.push_back((x < depth.cols / 4 ? 0.06 : 0.03) * vertices.back().position.norm());
     }
-    ASSERT_TRUE(WritePly(folder_.Path("mesh/" + std::to_string(k) + ".ply"), vertices).ok());
+    ASSERT_TRUE(WritePly(folder_.Path("mesh/" + std::to_string(k) + ".ply"), vertices, sigmas).ok());
   }
   const auto error = ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame);
   ASSERT_TRUE(error.ok()) << error.status().message();
   ASSERT_TRUE(error->mesh && error->mesh_alone);
-  EXPECT_NEAR(error->mesh->abs_rel, 0.02, 1e-3);
-  EXPECT_NEAR(error->mesh_alone->abs_rel, 0.1, 1e-3);
+  EXPECT_NEAR(error->mesh->depth.abs_rel, 0.02, 1e-3);
+  EXPECT_NEAR(error->mesh_alone->depth.abs_rel, 0.1, 1e-3);
+  ASSERT_TRUE(error->mesh->within_sigma && error->mesh_alone->within_sigma);
+  EXPECT_EQ((*error->mesh->within_sigma)[0], 1.0);
+  EXPECT_EQ((*error->mesh_alone->within_sigma)[0], 0.0);
+  EXPECT_EQ((*error->mesh_alone->within_sigma)[1], 1.0);
   EXPECT_NEAR(error->mesh_alone_share.value(), 0.25, 0.02);
   EXPECT_NEAR(error->mesh_vertices, Rendered().camera.width() / 8.0, 1);
 }

@@ -375,6 +375,25 @@ TEST_F(MeshFilesTest, PlyHasTheVerticesIds) {
   EXPECT_EQ(id, 300);
 }
 
+TEST_F(MeshFilesTest, PlysVerticesComeBackWithTheirSigmas) {
+  ASSERT_TRUE(WritePly(folder_.Path("square.ply"), Square()).ok());
+  const auto vertices = ReadPlyVertices(folder_.Path("square.ply"));
+  ASSERT_TRUE(vertices.ok()) << vertices.status().message();
+  EXPECT_EQ(vertices->positions[3], Eigen::Vector3d(5, 5, 20));
+  EXPECT_EQ(vertices->sigmas, (std::vector<double>{0.1F, 0.2F, 0.3F, 0.4F}));
+
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  const auto bare = ReadPlyVertices(folder_.Write("bare.ply", header + "end_header\n1 2 3\n"));
+  ASSERT_TRUE(bare.ok()) << bare.status().message();
+  EXPECT_TRUE(bare->sigmas.empty());
+  const auto ascii =
+      ReadPlyVertices(folder_.Write("ascii.ply", header + "property float sigma\nend_header\n1 2 3 0.5\n"));
+  ASSERT_TRUE(ascii.ok()) << ascii.status().message();
+  EXPECT_THAT(ascii->sigmas, ElementsAre(0.5));
+  EXPECT_FALSE(ReadPlyVertices(folder_.Write("other.ply", "solid\n")).ok());
+}
+
 TEST_F(MeshFilesTest, PlyHasTheVerticesViews) {
   mesh_.ids = {7, 8, 9, 300};
   mesh_.views = {1, 2, 1, 2};

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/image/texture.h"
+#include "pliant/io/ply.h"
 
 namespace pliant {
 
@@ -63,10 +63,9 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path);
 Status CheckSurfaceOfRun(const SurfaceFolder& surface, const std::string& run_path);
 // Fails also with kMismatch where an image has not the camera's size.
 Result<SurfaceDepth> ReadSurfaceDepth(const SurfaceFolder& folder, const SurfaceFolder::Frame& frame);
-// What the frame shows of the mesh: its vertices in the camera's frame, map units; none where there is no mesh. Fails
-// with kUnreadable.
-Result<std::vector<Eigen::Vector3d>> ReadSurfaceVertices(const SurfaceFolder& folder,
-                                                         const SurfaceFolder::Frame& frame);
+// What the frame shows of the mesh: its vertices in the camera's frame, and the standard deviations of their distances,
+// map units; none where there is no mesh. Fails with kUnreadable.
+Result<PlyVertices> ReadSurfaceVertices(const SurfaceFolder& folder, const SurfaceFolder::Frame& frame);
 
 // What the files of frames are called: as their images, with the ending .png, and with the frame's number where another
 // image of the run would be called the same (a.jpg and a.png, left/1.png and right/1.png).

@@ -27,6 +27,12 @@ struct DepthFigures {
 };
 inline constexpr std::array kDepthBoundsMm = {1.0, 2.0, 5.0};
 
+// Of a mesh's vertices; means over the frames that have such ones.
+struct VertexFigures {
+  DepthFigures depth;
+  std::optional<std::array<double, 2>> within_sigma;  // shares within 1, 2 of their own; nothing: none has any
+};
+
 // Of the pixels where a depth can be expected (ComputeDenseCompleteness).
 struct DenseCompleteness {
   double share = 0;        // such pixels, of those with a true depth
@@ -47,9 +53,8 @@ struct DenseError {
   std::optional<DepthFigures> filled;           // of the pixels that were filled from the rim of a hole, which are none
                                                 // of the others; over the frames that have such ones; nothing: none has
   double filled_share = 0;                      // of the pixels with a true depth; 0: holes were not filled
-  std::optional<DepthFigures> mesh;             // of the mesh's vertices, where the frame has a depth of its own too;
-                                                // over the frames that have such ones; nothing: none has
-  std::optional<DepthFigures> mesh_alone;       // where it has none: also of tissue that is hidden here; likewise
+  std::optional<VertexFigures> mesh;            // where the frame has a depth of its own too; nothing: no frame has any
+  std::optional<VertexFigures> mesh_alone;      // where it has none: also of tissue that is hidden here; likewise
   double mesh_vertices = 0;                     // mean over the frames; 0: there is no mesh
   std::optional<double> mesh_alone_share = {};  // of the vertices; nothing: there is no mesh
   double within_1_sigma = 0;                    // shares of the pixels of `estimate`
