@@ -21,7 +21,7 @@ Result<FolderLock> FolderLock::Take(const std::filesystem::path& folder) {
                                               "; choose another folder or change its permissions");
   FolderLock lock(descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return Status(ErrorCode::kUnwritable, "another run is being written into " + Quoted(folder.string()) +
+    return Status(ErrorCode::kUnwritable, "another program is writing into " + Quoted(folder.string()) +
                                               "; wait for its end, or give another folder");
   return lock;
 }

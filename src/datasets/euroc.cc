@@ -12,6 +12,7 @@
 
 #include "datasets/formats.h"
 #include "datasets/set_files.h"
+#include "io/yaml.h"
 #include "pliant/base/files.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
@@ -50,16 +51,12 @@ Result<Sensor> ReadSensor(const fs::path& file) {
                           file.string() +
                               " is not EuRoC's description of a camera: it has resolution, intrinsics, "
                               "distortion_model, distortion_coefficients and T_BS");
-  YAML::Node root;
   auto text = ReadFile(file.string());
   if (!text.ok()) return text.status();
   if (text->starts_with("%YAML")) (*text)[0] = '#';
-  try {
-    root = YAML::Load(*text);
-  } catch (const YAML::Exception&) {
-    return unreadable;
-  }
-  if (!root.IsMap()) return unreadable;
+  const auto parsed = ParseYaml(file.string(), *text);
+  if (!parsed.ok() || !parsed->IsMap()) return unreadable;
+  const YAML::Node& root = *parsed;
   const auto size = NumbersOf(root["resolution"]);
   const auto lens = NumbersOf(root["intrinsics"]);
   const auto distortion = NumbersOf(root["distortion_coefficients"]);

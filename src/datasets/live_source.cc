@@ -19,8 +19,6 @@
 #include "datasets/data_set.h"
 #include "datasets/frame_grabber.h"
 #include "datasets/image_file.h"
-#include "pliant/base/files.h"
-#include "pliant/base/folder_lock.h"
 #include "pliant/base/parallel.h"
 #include "pliant/base/text.h"
 #include "pliant/datasets/native_layout.h"
@@ -134,7 +132,6 @@ struct LiveSource::State {
   const LiveRequest request;
   std::unique_ptr<FrameGrabber> grabber;
   std::optional<LiveCalibration> calibration;
-  std::optional<FolderLock> lock_of_recording;
   std::optional<NativeWriter> writer;  // used by `recorder` alone
 
   mutable std::mutex mutex;
@@ -281,12 +278,6 @@ Result<std::shared_ptr<LiveSource>> LiveSource::Open(const LiveRequest& request)
   if (!calibration.ok()) return calibration.status();
   state.calibration = *std::move(calibration);
 
-  std::error_code error;
-  fs::create_directories(request.recording_path, error);
-  if (error) return Unwritable(request.recording_path);
-  auto lock_of_recording = FolderLock::Take(request.recording_path);
-  if (!lock_of_recording.ok()) return lock_of_recording.status();
-  state.lock_of_recording = *std::move(lock_of_recording);
   const SourceCalibration& source = state.calibration->calibration;
   CameraFile camera{.camera = source.camera, .fps = source.Fps()};
   camera.photometric = source.photometric;

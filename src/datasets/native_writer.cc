@@ -35,11 +35,13 @@ Result<NativeWriter> NativeWriter::Create(fs::path folder, const CameraFile& cam
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return Unwritable(folder);
+  auto lock = FolderLock::Take(folder);
+  if (!lock.ok()) return lock.status();
   for (const char* kind : {native::kImageFolder, native::kRightFolder, native::kDepthFolder, native::kMaskFolder})
     if (Status status = RemoveFrames(folder / kind); !status.ok()) return status;
   for (const char* file : {native::kPosesFile, native::kTimesFile}) fs::remove(folder / file, error);
   if (Status status = WriteCameraFile((folder / native::kCameraFile).string(), camera); !status.ok()) return status;
-  return NativeWriter(std::move(folder), camera.depth_scale.value_or(1.0));
+  return NativeWriter(std::move(folder), *std::move(lock), camera.depth_scale.value_or(1.0));
 }
 
 int NativeWriter::OutOfRange(const cv::Mat& depth_mm) const {

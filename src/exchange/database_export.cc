@@ -137,23 +137,15 @@ Status Fill(const std::string& path, const RunSource& source, const ExportOption
 Status ExportDatabase(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
   const std::string path = folder.Path("database.db");
   const std::string log = folder.place + "/database_creator.log";  // stays after a failure
-  const std::string beside = path + ".tmp";
   std::error_code error;
-  std::filesystem::remove(beside, error);
   std::filesystem::create_directories(folder.place, error);
   // The program that is installed knows its own schema.
-  Status status = RunProgram({"colmap", "database_creator", "--database_path", beside}, log);
-  if (status.ok()) status = Fill(beside, source, options);
-  if (status.ok()) {
-    for (const char* log_of_former : {"-wal", "-shm"}) std::filesystem::remove(path + log_of_former, error);
-    std::filesystem::rename(beside, path, error);
-    if (error) status = {ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": " + error.message()};
-  }
-  if (status.ok())
-    std::filesystem::remove(log, error);
-  else
-    std::filesystem::remove(beside, error);
-  return status;
+  Status status = RunProgram({"colmap", "database_creator", "--database_path", path}, log);
+  if (status.ok()) status = Fill(path, source, options);
+  if (!status.ok()) return status;
+  for (const char* log_of_former : {"database.db-wal", "database.db-shm", "database_creator.log"})
+    std::filesystem::remove(std::filesystem::path(folder.place) / log_of_former, error);
+  return Status::Ok();
 }
 
 }  // namespace pliant

@@ -7,11 +7,9 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 
 #include "exchange/exports.h"
 #include "pliant/base/files.h"
-#include "pliant/base/folder_lock.h"
 #include "pliant/base/staged_folder.h"
 #include "pliant/base/text.h"
 #include "pliant/io/run_writer.h"
@@ -21,7 +19,6 @@ namespace pliant {
 namespace {
 
 using Needs = ExportFormat::Needs;
-using Leaves = ExportFormat::Leaves;
 
 constexpr std::array kFormats = {
     ExportFormat{"canonical",
@@ -36,10 +33,10 @@ constexpr std::array kFormats = {
         ExportColmapSpacetime},
     ExportFormat{"frames",
                  "a COLMAP model a frame, in folders 000000, 000001, ..., with the points where they were then.",
-                 ExportColmapFrames, Leaves::kManyFiles},
+                 ExportColmapFrames},
     ExportFormat{"ply",
                  "a file a frame, with color, track id and the displacement dx, dy, dz from the undeformed position.",
-                 ExportPly, Leaves::kManyFiles},
+                 ExportPly},
     ExportFormat{"trajectories",
                  "trajectories.ply, every point in every frame, those of a track joined by edges, colored by time.",
                  ExportTrajectories},
@@ -60,18 +57,18 @@ constexpr std::array kFormats = {
     ExportFormat{"stir",
                  "positions.json and, of runs in millimeters, positions3d.json: where the points of the file "
                  "--Export.start_points, or else the run's own, are in its last frame, as the STIR challenge has it.",
-                 ExportStir, Leaves::kManyFiles},
+                 ExportStir},
     ExportFormat{"nerfstudio",
                  "transforms.json with the images, masks and sparse_pc.ply that it names, and of --surface the depths. "
                  "The poses are in the file's `unit` of map units, so that a step of the depth images is 0.001, which "
                  "nerfstudio expects.",
-                 ExportNerfstudio, Leaves::kManyFiles, Needs::kRunAndImages},
+                 ExportNerfstudio, Needs::kRunAndImages},
     ExportFormat{
         "endonerf",
         "poses_bounds.npy, images/, masks/ (255 = not to be learned from) and of --surface depth/, as EndoNeRF "
         "and programs that follow it read them. The images are those of a pinhole camera with its principal "
         "point in the middle (pinhole.yaml). A step of the depth images is the unit of the poses.",
-        ExportEndoNerf, Leaves::kManyFiles, Needs::kRunAndImages},
+        ExportEndoNerf, Needs::kRunAndImages},
 };
 
 Result<const ExportFormat*> FindFormat(const std::string& name) {
@@ -168,25 +165,13 @@ Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOption
   auto sources = ReadRunSources(request, options.stride);
   if (!sources.ok()) return sources.status();
   for (RunSource& source : *sources) source.progress = progress;
-  // What is more than a group of files is written elsewhere and moved when all of it is there.
-  std::optional<StagedFolder> staged;
-  std::optional<FolderLock> lock;  // a staged folder has its own
-  if (Status status = MakeFolder(request.output_path); !status.ok()) return status;
-  if (sources->size() > 1 || (*format)->leaves == Leaves::kManyFiles) {
-    auto created = StagedFolder::Create(request.output_path, {});
-    if (!created.ok()) return created.status();
-    staged.emplace(*std::move(created));
-  } else {
-    auto taken = FolderLock::Take(request.output_path);
-    if (!taken.ok()) return taken.status();
-    lock.emplace(*std::move(taken));
-  }
+  auto staged = StagedFolder::Create(request.output_path, {});
+  if (!staged.ok()) return staged.status();
   ExportSummary summary;
   for (std::size_t k = 0; k < sources->size(); ++k) {
     const RunSource& source = (*sources)[k];
     const std::string submap = sources->size() > 1 ? "/" + std::to_string(k) : "";
-    const std::string top = staged ? staged->Path("").string() : request.output_path;
-    const ExportFolder folder{top + submap, request.output_path + submap};
+    const ExportFolder folder{staged->path().string() + submap, request.output_path + submap};
     if (Status status = MakeFolder(folder.path); !status.ok()) return status;
     if (Status status = (*format)->write(source, options, folder); !status.ok()) return status;
     summary.frames += static_cast<int>(source.frames.size());
@@ -194,8 +179,7 @@ Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOption
     summary.observations += source.num_observations;
     summary.notes.insert(summary.notes.end(), source.notes.begin(), source.notes.end());
   }
-  if (staged)
-    if (Status status = staged->Commit(); !status.ok()) return status;
+  if (Status status = staged->Commit(); !status.ok()) return status;
   if (sources->size() > 1)
     summary.notes.push_back("the run has " + std::to_string(sources->size()) +
                             " submaps, each with its own world and unit: one folder each");

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What ExportFormats lists, each from a run's source into a folder that is there. ExportRun lets the files of those
-// that write many appear together; the others do so themselves.
+// What ExportFormats lists, each from a run's source into a folder that is there, whose files ExportRun lets appear
+// together when all are written.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace pliant {
 
 struct ExportFolder {
   std::string path;   // where files are written
-  std::string place;  // where they will be seen: the same, or where `path` is moved when everything is written
+  std::string place;  // where they are moved when everything is written
 
   std::string Path(const std::string& name) const { return path + "/" + name; }
   // Makes a subfolder. Fails with kUnwritable.

@@ -3,6 +3,7 @@
 
 #include "io/yaml.h"
 
+#include <cstddef>
 #include <set>
 
 #include "pliant/base/text.h"
@@ -15,16 +16,24 @@ std::string PathAndLine(const std::string& path, const YAML::Node& node) {
 
 std::string KeyText(const YAML::Node& key) { return key.IsScalar() ? key.Scalar() : "?"; }
 
-Result<YAML::Node> ParseYamlMap(const std::string& path, const std::string& text) {
-  YAML::Node root;
+Result<YAML::Node> ParseYaml(const std::string& path, const std::string& text) {
+  constexpr std::size_t kMaxBytes = 1'000'000;
+  if (text.size() > kMaxBytes)
+    return Status(ErrorCode::kUnreadable,
+                  Quoted(path) + " has more than 1 MB, which no calibration and no options have");
   try {
-    root = YAML::Load(text);
+    return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     return Status(ErrorCode::kUnreadable, PathAndLine(path, error.mark.line + 1) + ": this is not YAML: " + error.msg);
   }
-  if (!root.IsMap() && !root.IsNull())
+}
+
+Result<YAML::Node> ParseYamlMap(const std::string& path, const std::string& text) {
+  auto root = ParseYaml(path, text);
+  if (!root.ok()) return root.status();
+  if (!root->IsMap() && !root->IsNull())
     return Status(ErrorCode::kUnreadable, PathAndLine(path, 1) + ": expected lines `name: value`");
-  if (const Status status = CheckUniqueKeys(path, root); !status.ok()) return status;
+  if (const Status status = CheckUniqueKeys(path, *root); !status.ok()) return status;
   return root;
 }
 

@@ -3,8 +3,7 @@
 
 #include "viewer/run_options.h"
 
-#include <yaml-cpp/yaml.h>
-
+#include "io/yaml.h"
 #include "pliant/base/files.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 
@@ -16,8 +15,10 @@ Result<std::vector<NamedText>> ReadRunOptions(const std::string& run_path) {
   if (!Exists(path)) return options;
   const auto text = ReadFile(path);
   if (!text.ok()) return text.status();
+  const auto root = ParseYaml(path, *text);
+  if (!root.ok()) return root.status();
   try {
-    for (const auto& group : YAML::Load(*text))
+    for (const auto& group : *root)
       for (const auto& option : group.second)
         options.push_back({group.first.Scalar(), option.first.Scalar(), option.second.Scalar()});
   } catch (const YAML::Exception& error) {

@@ -26,7 +26,7 @@ TEST(FolderLock, IsHeldByOneAtATime) {
   const auto second = FolderLock::Take(folder.Path(""));
   ASSERT_FALSE(second.ok());
   EXPECT_EQ(second.status().code(), ErrorCode::kUnwritable);
-  EXPECT_THAT(second.status().message(), HasSubstr("another run is being written into"));
+  EXPECT_THAT(second.status().message(), HasSubstr("another program is writing into"));
   std::optional<FolderLock> moved = *std::move(first);
   EXPECT_FALSE(FolderLock::Take(folder.Path("")).ok());
   moved.reset();

@@ -78,7 +78,7 @@ class DatabaseExport : public testing::Test {
   Status Refused() const {
     Status status = Export().status();
     EXPECT_FALSE(std::filesystem::exists(folder_.Path("out/database.db")));
-    EXPECT_FALSE(std::filesystem::exists(folder_.Path("out/database.db.tmp")));
+    EXPECT_FALSE(std::filesystem::exists(folder_.Path("out/.unfinished")));
     return status;
   }
 

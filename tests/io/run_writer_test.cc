@@ -104,7 +104,7 @@ TEST(RunWriter, LeavesARunAloneThatIsBeingWritten) {
     const auto second = RunWriter::Create(folder.Path("run"), TestCamera(), {}, "", {kCosts, kStages});
     ASSERT_FALSE(second.ok());
     EXPECT_EQ(second.status().code(), ErrorCode::kUnwritable);
-    EXPECT_THAT(second.status().message(), HasSubstr("another run is being written into"));
+    EXPECT_THAT(second.status().message(), HasSubstr("another program is writing into"));
     ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "").ok());
   }
   EXPECT_TRUE(std::filesystem::exists(folder.Path("run/map.ply")));

@@ -102,13 +102,14 @@ TEST(OptionsFile, RefusesMistakesWithFileAndLineAndChangesNothing) {
   TestOptions options;
   OptionTable table;
   options.List(table);
-  const std::pair<const char*, const char*> cases[] = {
+  const std::pair<std::string, const char*> cases[] = {
       {"Track:\n  levels: 2\n  nam: x\n", "o.yaml:3: there is no option 'Track.nam'; did you mean 'Track.name'?"},
       {"Track:\n  levels: 2\nGraph:\n  sigma: 1000\n", "o.yaml:4: Graph.sigma is '1000'"},
       {"Track:\n  levels: 2\n  levels: 3\n", "o.yaml:3: 'levels' is given twice"},
       {"Track:\n  levels: [2, 3]\n", "takes one value"},
       {"levels: 2\n", "o.yaml:1: 'levels' has no group"},
-      {"Track: {levels: 2\n", "not YAML"}};
+      {"Track: {levels: 2\n", "not YAML"},
+      {"Track: {levels: " + std::string(1'000'000, '2') + "}\n", "more than 1 MB"}};
   for (const auto& [text, says] : cases) {
     const Status status = LoadOptionsFile(folder.Write("o.yaml", text), table);
     EXPECT_THAT(status.message(), HasSubstr(says));

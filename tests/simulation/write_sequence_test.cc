@@ -209,6 +209,18 @@ TEST_F(WriteSequenceTest, LeavesASequenceAloneThatWasNotSimulated) {
   EXPECT_EQ(Bytes(folder_ / "images/filmed.png"), "of a patient");
 }
 
+TEST_F(WriteSequenceTest, LeavesAFolderAloneThatAnotherOneWritesInto) {
+  Status second = Status::Ok();
+  const Status first = WriteSequence(SmallScene(TrajectoryKind::kHold, 3), folder_, [&](int done, int) {
+    if (done == 2) second = WriteSequence(SmallScene(TrajectoryKind::kHold, 1), folder_);
+    return SimulationContinue::kYes;
+  });
+  EXPECT_TRUE(first.ok()) << first.message();
+  EXPECT_EQ(second.code(), ErrorCode::kUnwritable);
+  EXPECT_THAT(second.message(), testing::HasSubstr("is writing into"));
+  EXPECT_EQ(CountFiles(folder_ / "images"), 3);
+}
+
 TEST_F(WriteSequenceTest, StopsOnRequestAndKeepsWhatWasRendered) {
   const Status status = WriteSequence(SmallScene(TrajectoryKind::kHold, 5), folder_, [](int done, int) {
     return done == 2 ? SimulationContinue::kStop : SimulationContinue::kYes;

@@ -11,6 +11,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "pliant/base/folder_lock.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
 #include "pliant/geometry/rigid3.h"
@@ -29,7 +30,8 @@ struct NativeFrame {
 
 class NativeWriter {
  public:
-  // Makes the folder and writes camera.yaml. Frames of an earlier sequence there are removed. Fails with kUnwritable.
+  // Makes the folder and writes camera.yaml. Frames of an earlier sequence there are removed. Fails with kUnwritable,
+  // also while another one writes there.
   static Result<NativeWriter> Create(std::filesystem::path folder, const CameraFile& camera);
 
   // The next frame, NNNNNN.png. Depths beyond what 16 bits hold of the camera file's depth_scale are written as none.
@@ -40,12 +42,13 @@ class NativeWriter {
   int OutOfRange(const cv::Mat& depth_mm) const;
 
  private:
-  NativeWriter(std::filesystem::path folder, double depth_scale)
-      : folder_(std::move(folder)), depth_scale_(depth_scale) {}
+  NativeWriter(std::filesystem::path folder, FolderLock lock, double depth_scale)
+      : folder_(std::move(folder)), lock_(std::move(lock)), depth_scale_(depth_scale) {}
 
   Status WriteImage(const char* kind, const cv::Mat& image);
 
   std::filesystem::path folder_;
+  FolderLock lock_;
   double depth_scale_;
   int frames_ = 0;
   std::ofstream times_;

@@ -40,13 +40,11 @@ struct ExportOptions {
 
 struct ExportFormat {
   enum class Needs { kRun, kRunAndImages };
-  enum class Leaves { kFileGroup, kManyFiles };
 
   std::string_view name;
   std::string_view what;  // for people: what it leaves, a sentence
   Status (*write)(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
-  Leaves leaves = Leaves::kFileGroup;  // files that it lets appear together, or many, which ExportRun lets
-  Needs needs = Needs::kRun;           // a format with images takes mask_path and surface_path of a request
+  Needs needs = Needs::kRun;  // a format with images takes mask_path and surface_path of a request
 };
 
 std::span<const ExportFormat> ExportFormats();
