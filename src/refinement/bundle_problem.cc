@@ -92,9 +92,10 @@ Result<BundleSummary> BundleProblem::Solve(int max_iterations, const std::functi
   return BundleSummary{summary.initial_cost, summary.final_cost};
 }
 
-// A few views see the same points: their normal equations, without the points, are dense. Those of many views and the
-// parts' are sparse, and the best order to eliminate in is found for all variables together. Where the scene deforms
-// every point is brought to its best after each step, too: coefficients against shapes is a curved valley.
+// Without the points the normal equations of a few views, which see the same points, are dense, and those of many
+// sparse; with them they would take about twice the memory. The parts are sparse as they are: the best order to
+// eliminate in is found for all variables together. Where the scene deforms every point is brought to its best after
+// each step, too: coefficients against shapes is a curved valley.
 void BundleProblem::SetLinearSolver(ceres::Solver::Options* options) {
   options->linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   if (input_.part != BundlePart::kAll) return;
@@ -105,8 +106,7 @@ void BundleProblem::SetLinearSolver(ceres::Solver::Options* options) {
   options->inner_iteration_ordering = points;
   const auto views = static_cast<int>(std::ranges::count(is_view_in_problem_, true));
   const int without_points = views * (6 + rank_) + static_cast<int>(nodes_.size()) * 3 * rank_;
-  if (without_points > kMaxDenseParameters) return;
-  options->linear_solver_type = ceres::DENSE_SCHUR;
+  options->linear_solver_type = without_points > kMaxDenseParameters ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
   options->linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>(*points);
   std::vector<double*> blocks;
   problem_->GetParameterBlocks(&blocks);

@@ -64,7 +64,7 @@ TEST(RigidScene, ItsSurfaceIsNearerToTheTruthThanItsPointsInterpolated) {
   EXPECT_LT(error->estimate.rmse_mm, kShareOfPlate * error->interpolation.value().rmse_mm);
   EXPECT_GT(error->within_2_sigma, kMinWithinTwoSigma);
   EXPECT_GT(error->mesh_vertices, kMinVertices);
-  EXPECT_LT(error->mesh.value().abs_rel, kMaxAbsRel);
+  EXPECT_LT(error->mesh.value().depth.abs_rel, kMaxAbsRel);
 }
 
 class SurfaceFiles : public testing::Test {
