@@ -127,7 +127,8 @@ int Report(const RunSummary& summary, const TrackArguments& arguments) {
     SayResult("  " + std::to_string(summary.stream->skipped) + " of " + std::to_string(summary.stream->received) +
               " images that came were skipped; the others are in " + RecordingOf(arguments.output.path).string());
   if (summary.stream && summary.stream->damaged > 0)
-    SayResult("  " + std::to_string(summary.stream->damaged) + " images that came could not be decoded");
+    SayResult("  " + std::to_string(summary.stream->damaged) +
+              " images that came were cut off or could not be decoded");
   for (const auto& [topic, sentence] : TrustIn(summary)) SayResult("  " + topic + ": " + sentence);
   return kExitOk;
 }
@@ -144,6 +145,11 @@ std::optional<int> ChooseOutput(const CommandLine& line, TrackArguments* argumen
     return line.UsageError("--resume needs the folder of the run that is gone on with; name it with --output_path");
   if (arguments->resume && output.overwrite)
     return line.UsageError("--resume goes on with a run and --overwrite begins a new one; give one of them");
+  if (arguments->resume && IsLiveSource(arguments->input.path))
+    return line.UsageError(
+        "the images of a live source do not come again: such a run cannot be resumed; track its "
+        "recording, " +
+        Quoted(RecordingOf(output.path).string()));
   if (output.path.empty()) output.path = DatedFolder(arguments->input.path);
   if (!arguments->resume)
     if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return exit;

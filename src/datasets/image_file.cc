@@ -110,37 +110,39 @@ struct DecodedImage {
   bool lossy = false;
 };
 
-Result<DecodedImage> Decode(const std::filesystem::path& path) {
-  const Result<Bytes> bytes = ReadBytes(path);
-  if (!bytes.ok()) return bytes.status();
+// `what` begins the sentence: "the image a.png".
+Result<DecodedImage> Decode(const Bytes& bytes, const std::string& what) {
   const std::string advice = "; copy or export it again";
-  if (bytes->empty()) return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is empty" + advice);
-  const Wholeness png = IsPng(*bytes) ? PngWholeness(*bytes) : Wholeness::kWhole;
+  if (bytes.empty()) return Status(ErrorCode::kUnreadable, what + " is empty" + advice);
+  const Wholeness png = IsPng(bytes) ? PngWholeness(bytes) : Wholeness::kWhole;
   if (png == Wholeness::kDamaged)
-    return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is damaged: a checksum is wrong" + advice);
-  if (png == Wholeness::kTruncated || (IsJpeg(*bytes) && !JpegIsWhole(*bytes)) ||
-      (IsBmp(*bytes) && !BmpIsWhole(*bytes)))
-    return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is truncated" + advice);
-  const std::string what = "the image " + path.string();
-  if (const auto size = ImageSizeOf(*bytes))
+    return Status(ErrorCode::kUnreadable, what + " is damaged: a checksum is wrong" + advice);
+  if (png == Wholeness::kTruncated || (IsJpeg(bytes) && !JpegIsWhole(bytes)) || (IsBmp(bytes) && !BmpIsWhole(bytes)))
+    return Status(ErrorCode::kUnreadable, what + " is truncated" + advice);
+  if (const auto size = ImageSizeOf(bytes))
     if (Status status = CheckPixels(*size, what); !status.ok()) return status;
   DecodedImage decoded;
   try {
-    decoded.image = cv::imdecode(*bytes, cv::IMREAD_UNCHANGED);
+    decoded.image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception&) {
     decoded.image.release();
   }
-  if (decoded.image.empty() && IsExr(*bytes))
-    return Status(ErrorCode::kUnreadable, "the image " + path.string() +
+  if (decoded.image.empty() && IsExr(bytes))
+    return Status(ErrorCode::kUnreadable, what +
                                               " is an EXR that OpenCV cannot decode: it is damaged, or this OpenCV was "
                                               "built without OpenEXR (set OPENCV_IO_ENABLE_OPENEXR=1 where it is only "
                                               "switched off)");
   if (decoded.image.empty())
-    return Status(ErrorCode::kUnreadable,
-                  "the image " + path.string() + " cannot be decoded (damaged, or not an image)" + advice);
+    return Status(ErrorCode::kUnreadable, what + " cannot be decoded (damaged, or not an image)" + advice);
   if (Status status = CheckPixels(decoded.image.size(), what); !status.ok()) return status;
-  decoded.lossy = IsJpeg(*bytes);
+  decoded.lossy = IsJpeg(bytes);
   return decoded;
+}
+
+Result<DecodedImage> Decode(const std::filesystem::path& path) {
+  const Result<Bytes> bytes = ReadBytes(path);
+  if (!bytes.ok()) return bytes.status();
+  return Decode(*bytes, "the image " + path.string());
 }
 
 // Whether the last bytes have the end marker of a PNG or a JPEG; of other files they say nothing.
@@ -172,6 +174,18 @@ cv::Mat WithoutAlpha(cv::Mat image) {
   return result;
 }
 
+Result<cv::Mat> WithEightBits(Result<DecodedImage> decoded, const std::string& what) {
+  if (!decoded.ok()) return decoded.status();
+  cv::Mat image = std::move(decoded->image);
+  if (image.depth() == CV_8U) return WithoutAlpha(std::move(image));
+  if (image.depth() != CV_16U)
+    return Status(ErrorCode::kUnreadable, what + " is neither 8-bit nor 16-bit; export it as 8-bit PNG");
+  cv::Mat result;
+  image.convertTo(result, CV_8U, 1.0 / 257.0);
+  image.release();  // there are not three of them at a time
+  return WithoutAlpha(std::move(result));
+}
+
 }  // namespace
 
 Result<cv::Size> SizeOfImageFile(const std::filesystem::path& path) {
@@ -183,17 +197,11 @@ Result<cv::Size> SizeOfImageFile(const std::filesystem::path& path) {
 std::string SizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 Result<cv::Mat> ReadImage(const std::filesystem::path& path) {
-  Result<DecodedImage> decoded = Decode(path);
-  if (!decoded.ok()) return decoded.status();
-  cv::Mat image = std::move(decoded->image);
-  if (image.depth() == CV_8U) return WithoutAlpha(std::move(image));
-  if (image.depth() != CV_16U)
-    return Status(ErrorCode::kUnreadable,
-                  "the image " + path.string() + " is neither 8-bit nor 16-bit; export it as 8-bit PNG");
-  cv::Mat result;
-  image.convertTo(result, CV_8U, 1.0 / 257.0);
-  image.release();  // there are not three of them at a time
-  return WithoutAlpha(std::move(result));
+  return WithEightBits(Decode(path), "the image " + path.string());
+}
+
+Result<cv::Mat> DecodeImage(const std::vector<unsigned char>& bytes, const std::string& what) {
+  return WithEightBits(Decode(bytes, what), what);
 }
 
 Result<cv::Mat> ReadMaskImage(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
@@ -28,6 +29,8 @@ Result<cv::Size> SizeOfImageFile(const std::filesystem::path& path);
 // 8-bit with one (gray) or three (BGR) channels. 16-bit values are divided by 257, alpha is dropped, EXIF is ignored.
 // Fails with kNotFound or kUnreadable.
 Result<cv::Mat> ReadImage(const std::filesystem::path& path);
+// The same of a file's content; `what` begins the sentence ("the image a.png").
+Result<cv::Mat> DecodeImage(const std::vector<unsigned char>& bytes, const std::string& what);
 
 // 8-bit, one channel, 0 or 255. A pixel counts when any color channel does: not 0, in a JPEG (whose zeros are not
 // exact) at least 128.

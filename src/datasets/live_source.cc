@@ -19,8 +19,8 @@
 #include "datasets/data_set.h"
 #include "datasets/frame_grabber.h"
 #include "datasets/image_file.h"
+#include "datasets/stream_errors.h"
 #include "pliant/base/parallel.h"
-#include "pliant/base/text.h"
 #include "pliant/datasets/native_layout.h"
 #include "pliant/datasets/native_writer.h"
 
@@ -37,8 +37,6 @@ double SecondsBetween(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-std::string SourceName(const fs::path& source) { return source == "-" ? "standard input" : Quoted(source.string()); }
-
 std::size_t SizeInBytes(const cv::Mat& image) { return image.total() * image.elemSize(); }
 
 // Of which only the size of the images is known, for the search of their calibration.
@@ -52,7 +50,7 @@ class ImagesOfSize final : public ImageStream {
   bool count_is_exact() const override { return false; }
   std::optional<double> fps() const override { return fps_; }
   std::string Name(int idx) const override { return native::FrameFileName(idx); }
-  std::string Title(int /*idx*/) const override { return "the first image of " + SourceName(source_); }
+  std::string Title(int /*idx*/) const override { return "the first image of " + SourceName(source_.string()); }
   std::optional<cv::Size> SizeAt(int /*idx*/) const override { return size_; }
   Result<std::optional<cv::Mat>> Read(int /*idx*/) override { return std::optional<cv::Mat>(); }
 
@@ -72,7 +70,7 @@ Result<LiveCalibration> CalibrationOf(const LiveRequest& request, cv::Size size,
   of_images.camera_path = request.camera_path.empty() ? fs::path(native::kCameraFile) : request.camera_path;
   std::error_code error;
   if (request.camera_path.empty() && !fs::is_regular_file(of_images.camera_path, error))
-    return Status(ErrorCode::kNotFound, "there is no calibration for " + SourceName(request.source) +
+    return Status(ErrorCode::kNotFound, "there is no calibration for " + SourceName(request.source.string()) +
                                             ": no file camera.yaml in the working folder; name one with --camera, or "
                                             "make one with pliant calibrate");
   auto data_set = Calibrated(of_images, std::make_unique<ImagesOfSize>(request.source, size, fps));
@@ -85,17 +83,9 @@ Result<LiveCalibration> CalibrationOf(const LiveRequest& request, cv::Size size,
   if (camera.width() != size.width || camera.height() != size.height)
     return Status(ErrorCode::kMismatch, "the calibration " + of_images.camera_path.string() + " is for images of " +
                                             SizeText(camera.width(), camera.height()) + ", but those of " +
-                                            SourceName(request.source) + " are " + SizeText(size.width, size.height) +
-                                            "; give the calibration of these");
+                                            SourceName(request.source.string()) + " are " +
+                                            SizeText(size.width, size.height) + "; give the calibration of these");
   return LiveCalibration{std::move(data_set->calibration), std::move(data_set->warnings)};
-}
-
-Status ChangesSize(const JpegSizes::Change& change) {
-  const std::string from = SizeText(change.from.width, change.from.height);
-  return {ErrorCode::kMismatch, "the images on standard input change their size from " + from + " to " +
-                                    SizeText(change.to.width, change.to.height) + " after " +
-                                    std::to_string(change.images) +
-                                    " images; bring them all to the size of the calibration before they are piped"};
 }
 
 struct Arrival {
@@ -123,11 +113,7 @@ struct LiveSource::State {
   // Waits until at most so many images are not recorded yet, or one cannot be.
   Status WaitForRecorder(std::size_t most, std::unique_lock<std::mutex>& lock);
   Result<std::optional<cv::Mat>> Take(std::unique_lock<std::mutex>& lock);
-  Status Stalled() const {
-    return {ErrorCode::kUnreadable, SourceName(request.source) + " has sent no image for " +
-                                        Digits(request.options.timeout_s, 0) +
-                                        " s; check it, or wait longer with LiveInput.timeout_s"};
-  }
+  StreamCounts CountsWithRate() const;
 
   const LiveRequest request;
   std::unique_ptr<FrameGrabber> grabber;
@@ -169,8 +155,7 @@ void LiveSource::State::Receive() {
   }
   const std::lock_guard lock(mutex);
   has_ended = true;
-  if (grabber->has_stalled()) ended = Stalled();
-  if (const auto change = grabber->size_change()) ended = ChangesSize(*change);
+  ended = grabber->status();
   changed.notify_all();
 }
 
@@ -202,7 +187,8 @@ Result<bool> LiveSource::State::HasNext(std::unique_lock<std::mutex>& lock) {
     if (IsStopped()) return false;
     if (!ended.ok()) return ended;
     if (has_ended) return false;
-    if (silence_s() > request.options.timeout_s + 2) return Stalled();  // the decoder's own time-out comes first
+    if (silence_s() > request.options.timeout_s + 2)  // the decoder's own time-out comes first
+      return SentNothing(request.source.string(), request.options.timeout_s);
     changed.wait_for(lock, kPoll);
   }
   return !IsStopped();
@@ -227,6 +213,15 @@ Result<std::optional<cv::Mat>> LiveSource::State::Take(std::unique_lock<std::mut
   unwritten.emplace_back(idx, image);
   changed.notify_all();
   return std::optional(image);
+}
+
+StreamCounts LiveSource::State::CountsWithRate() const {
+  StreamCounts result = counts;
+  result.fps = calibration->calibration.Fps();
+  result.measured = request.options.frames == LiveFrames::kNewest && counts.received > 1;
+  if (result.measured)
+    result.fps = static_cast<double>(counts.received - 1) / SecondsBetween(*first_arrival, *last_arrival);
+  return result;
 }
 
 void LiveInputOptions::List(OptionTable& table) {
@@ -271,7 +266,7 @@ Result<std::shared_ptr<LiveSource>> LiveSource::Open(const LiveRequest& request)
       return Status(ErrorCode::kInterrupted, "stopped on request before the first image");
     if (!*has_first)
       return Status(ErrorCode::kUnreadable,
-                    SourceName(request.source) + " ends before its first image; check what it sends");
+                    SourceName(request.source.string()) + " ends before its first image; check what it sends");
     size = state.next->image.size();
   }
   auto calibration = CalibrationOf(request, size, state.grabber->fps());
@@ -334,7 +329,7 @@ int LiveSource::Passed() const {
 
 StreamCounts LiveSource::counts() const {
   const std::lock_guard lock(state_->mutex);
-  return state_->counts;
+  return state_->CountsWithRate();
 }
 
 Status LiveSource::FinishRecording() {

@@ -114,7 +114,11 @@ Json LatencyJson(const RunSummary& summary) {
 Json StreamJson(const RunSummary& summary) {
   if (!summary.stream) return {};
   const StreamCounts& stream = *summary.stream;
-  return {{"received", stream.received}, {"skipped", stream.skipped}, {"damaged", stream.damaged}};
+  return {{"received", stream.received},
+          {"skipped", stream.skipped},
+          {"damaged", stream.damaged},
+          {"fps", stream.fps},
+          {"measured", stream.measured}};
 }
 
 Json MediansJson(const RunSummary& summary) {
@@ -241,7 +245,8 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
       summary.first_maps.push_back(ReadFirstMap(map));
     if (const Json stream = json.value("stream", Json()); !stream.is_null())
       summary.stream = {stream.at("received").get<std::int64_t>(), stream.at("skipped").get<std::int64_t>(),
-                        stream.value("damaged", std::int64_t{0})};
+                        stream.value("damaged", std::int64_t{0}), stream.value("fps", 0.0),
+                        stream.value("measured", false)};
     if (const Json medians = json.value("medians", Json()); !medians.is_null()) {
       summary.median_reprojection_error_px = medians.at("reprojection_error_px").get<double>();
       summary.median_coverage = medians.at("coverage").get<double>();

@@ -101,7 +101,11 @@ struct RunDescription {
 struct StreamCounts {
   std::int64_t received = 0;
   std::int64_t skipped = 0;  // of those: newer ones had come
-  std::int64_t damaged = 0;  // not among those: they could not be decoded
+  std::int64_t damaged = 0;  // not among those: they were cut off or could not be decoded
+  // Images a second, by which the frames have their times; 0: unknown (earlier versions). Measured as they came, or
+  // the word of the source, else of the calibration.
+  double fps = 0;
+  bool measured = false;
 };
 
 // Of frames, from arrival until everything was done that a frame asked for, in milliseconds.
