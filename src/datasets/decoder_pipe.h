@@ -38,8 +38,8 @@ class DecoderPipe {
   // The following are known when HasMore is false, or the pipe has ended before standard input.
   // Why it has, where the video is at fault (Y4mFrames).
   Status status() const { return has_ended_ ? status_ : Status::Ok(); }
-  // Whether the video ends within a frame, and whether that is its first one.
-  bool EndsWithinFrame() const { return has_ended_ && y4m_ && y4m_->IsWithinFrame(); }
+  // Whether the video, else in order, ends within a frame, and whether that is its first one.
+  bool EndsWithinFrame() const { return has_ended_ && y4m_ && status_.ok() && y4m_->IsWithinFrame(); }
   bool EndsWithinFirstFrame() const { return EndsWithinFrame() && y4m_->frames() == 0; }
 
  private:
