@@ -157,9 +157,11 @@ std::optional<cv::Mat> CaptureGrabber::Wait() {
     if (SecondsSince(asked) > kMostOfTheTimeout * timeout_s_) since_long_wait_ = 0;
     if (image) {
       CountDamaged(is_device_ ? 0 : damaged);
+      gave_up_ = false;
       since_long_wait_ = std::min(since_long_wait_ + 1, kMaxHeldBack + 1);
       return image;
     }
+    gave_up_ = gave_up_ || (pipe_ && pipe_->HasMore());
     if (is_device_) std::this_thread::sleep_for(kPauseOfDevice);
   } while (!is_stopped_() && SecondsSince(begin) < kMostOfTheTimeout * timeout_s_ &&
            (is_device_ || ++damaged <= kMaxDamaged));
@@ -172,7 +174,7 @@ std::optional<cv::Mat> CaptureGrabber::Wait() {
 Status CaptureGrabber::AtEnd(bool has_waited) {
   if (!pipe_)  // a camera has no end
     return has_waited || since_long_wait_ <= kMaxHeldBack ? SentNothing(source(), timeout_s_) : Status::Ok();
-  if (pipe_->HasMore() && images() > 0)
+  if (gave_up_ && images() > 0)
     return {ErrorCode::kUnreadable, "the video on standard input cannot be decoded beyond its image " +
                                         std::to_string(images()) +
                                         ", although more is sent; send it as ffmpeg -f yuv4mpegpipe does"};

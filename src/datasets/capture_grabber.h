@@ -51,7 +51,8 @@ class CaptureGrabber final : public FrameGrabber {
   bool is_device_;
   bool gives_jpegs_ = false;     // the capture, instead of images
   bool may_repeat_ = false;      // the decoder, where an image is cut off
-  std::optional<cv::Mat> last_;  // where it may
+  bool gave_up_ = false;         // the decoder, since its last image, although the pipe had more
+  std::optional<cv::Mat> last_;  // where it may repeat
   std::optional<cv::Mat> ahead_;
   int since_long_wait_ = 1 << 20;  // images since one, or the end, was waited for about as long as the time-out
 };

@@ -21,9 +21,7 @@ Result<std::unique_ptr<FrameGrabber>> OpenPiped(double timeout_s, const std::fun
   if (!input.ok()) return input.status();
   const auto begin = (*input)->Read(is_stopped);
   if ((*input)->has_stalled()) return SentNothing("-", timeout_s);
-  if (begin.empty())
-    return Status(ErrorCode::kUnreadable,
-                  "standard input is closed or empty; pipe a video into the program, and check the one that sends it");
+  if (begin.empty()) return StandardInputIsEmpty();
   if (begin.front() == kBeginOfJpeg)
     return std::unique_ptr<FrameGrabber>(new PipedJpegs(*std::move(input), begin, timeout_s, is_stopped));
   return CaptureGrabber::OpenPiped(*std::move(input), begin, timeout_s, is_stopped);

@@ -11,6 +11,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "datasets/stream_errors.h"
+
 namespace pliant {
 namespace {
 
@@ -28,8 +30,7 @@ Result<std::unique_ptr<StandardInput>> StandardInput::Open(double timeout_s) {
     return Status(ErrorCode::kUnreadable,
                   "standard input is a terminal; pipe a video into the program, as in ffmpeg -i VIDEO -f yuv4mpegpipe "
                   "- | pliant track -");
-  if (fcntl(STDIN_FILENO, F_GETFD) == -1)
-    return Status(ErrorCode::kUnreadable, "standard input is closed; pipe a video into the program");
+  if (fcntl(STDIN_FILENO, F_GETFD) == -1) return StandardInputIsEmpty();
   return std::unique_ptr<StandardInput>(new StandardInput(timeout_s));
 }
 

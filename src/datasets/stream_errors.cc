@@ -10,6 +10,11 @@ namespace pliant {
 
 std::string SourceName(const std::string& source) { return source == "-" ? "standard input" : Quoted(source); }
 
+Status StandardInputIsEmpty() {
+  return {ErrorCode::kUnreadable,
+          "standard input is closed or empty; pipe a video into the program, and check the one that sends it"};
+}
+
 Status CannotBeDecoded(const std::string& source) {
   if (source == "-")
     return {ErrorCode::kUnreadable,

@@ -16,6 +16,7 @@ namespace pliant {
 std::string SourceName(const std::string& source);
 
 // kUnreadable.
+Status StandardInputIsEmpty();
 Status CannotBeDecoded(const std::string& source);
 Status EndsWithinFirstImage(const std::string& source);
 Status SentNothing(const std::string& source, double timeout_s);

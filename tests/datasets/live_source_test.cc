@@ -4,9 +4,13 @@
 #include "pliant/datasets/live_source.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <thread>
@@ -17,11 +21,14 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <unistd.h>
 
 #include "datasets/sequence_files.h"
 #include "pliant/camera/assumed_camera.h"
 #include "pliant/datasets/open_sequence.h"
 #include "support/piped_video.h"
+#include "support/served_bytes.h"
 
 namespace pliant {
 namespace {
@@ -32,6 +39,12 @@ using Clock = std::chrono::steady_clock;
 constexpr int kFps = 20;
 
 bool AreEqual(const cv::Mat& a, const cv::Mat& b) { return a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0; }
+
+std::string Jpeg(const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", image, bytes);
+  return {bytes.begin(), bytes.end()};
+}
 
 class LiveSourceTest : public SequenceFiles {
  protected:
@@ -57,8 +70,46 @@ class LiveSourceTest : public SequenceFiles {
     pipe_.Close();
   }
 
+  void TearDown() override {
+    pipe_.GiveUp();
+    SequenceFiles::TearDown();
+  }
+
+  // A video of these images.
+  std::string Video(const std::string& name, const std::array<char, 4>& codec, const std::vector<int>& images) {
+    cv::VideoWriter writer(Path(name), cv::CAP_FFMPEG, cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]),
+                           kFps, {kWidth, kHeight});
+    EXPECT_TRUE(writer.isOpened());
+    for (const int idx : images) {
+      cv::Mat color;
+      cv::cvtColor(Gray(idx), color, cv::COLOR_GRAY2BGR);
+      writer.write(color);
+    }
+    writer.release();
+    return Path(name);
+  }
+  // Behind each other, while they are read.
+  void SendFile(const std::string& file, const std::string& rest) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    sender_ = std::jthread([this, bytes, rest] {
+      pipe_.Write(bytes + rest);
+      pipe_.Close();
+    });
+  }
+  // The numbers of the images to the end.
+  static std::vector<int> ReadAll(LiveSource& source) {
+    std::vector<int> numbers;
+    while (true) {
+      const auto image = source.Read(static_cast<int>(numbers.size()));
+      EXPECT_TRUE(image.ok()) << image.status().message();
+      if (!image.ok() || !image->has_value()) return numbers;
+      numbers.push_back(static_cast<int>(std::lround((cv::mean(**image)[0] - 40) / 20)));
+    }
+  }
   PipedVideo pipe_;
   LiveRequest request_;
+  std::jthread sender_;
 };
 
 TEST(IsLiveSource, TellsAddressesFromFiles) {
@@ -92,6 +143,8 @@ TEST_F(LiveSourceTest, GivesEveryImageAndRecordsItAsASequence) {
   EXPECT_EQ((*source)->TimestampS(6), std::nullopt);
   EXPECT_EQ((*source)->counts().received, 6);
   EXPECT_EQ((*source)->counts().skipped, 0);
+  EXPECT_EQ((*source)->counts().fps, kFps);
+  EXPECT_FALSE((*source)->counts().measured);
   EXPECT_TRUE(AreEqual(**(*source)->Read(2), images[2]));  // tracking goes back
   EXPECT_TRUE((*source)->FinishRecording().ok());
   const auto recorded = OpenSequence({.image_path = Path("recording")});
@@ -132,6 +185,8 @@ TEST_F(LiveSourceTest, SkipsAndCountsWhatCameWhileTrackingWasBusy) {
   EXPECT_NEAR(cv::mean(**newest)[0], DecodedLevel(4), 2);
   EXPECT_FALSE((*source)->Read(1)->has_value());
   EXPECT_EQ((*source)->counts().skipped, 4);
+  EXPECT_TRUE((*source)->counts().measured);
+  EXPECT_GT((*source)->counts().fps, 0);
   EXPECT_GE((*source)->TimestampS(0), 0);
 }
 
@@ -191,26 +246,122 @@ TEST_F(LiveSourceTest, ASourceThatStallsFailsAndOneThatIsStoppedEnds) {
   EXPECT_FALSE((*source)->Read(3)->has_value());
 }
 
-std::string Jpeg(const cv::Mat& image) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", image, bytes);
-  return {bytes.begin(), bytes.end()};
-}
-
 TEST_F(LiveSourceTest, CountsWhatCannotBeDecoded) {
   for (int idx = 0; idx < 8; ++idx) {
     std::string image = Jpeg(Gray(idx));
     if (idx == 4) std::fill(image.begin() + 4, image.end() - 2, '\0');
+    if (idx == 7) image.resize(image.size() / 2);
     pipe_.Write(image);
   }
   pipe_.Close();
   auto source = LiveSource::Open(request_);
   ASSERT_TRUE(source.ok()) << source.status().message();
-  int images = 0;
-  while ((*source)->Read(images)->has_value()) ++images;
-  EXPECT_EQ((*source)->counts().received, images);
-  EXPECT_LT(images, 8);
-  EXPECT_GE((*source)->counts().damaged, 1);
+  EXPECT_EQ(ReadAll(**source), (std::vector<int>{0, 1, 2, 3, 5, 6}));
+  EXPECT_EQ((*source)->counts().received, 6);
+  EXPECT_EQ((*source)->counts().damaged, 2);
+}
+
+TEST_F(LiveSourceTest, APipedPhotographIsThereBeforeTheNextOneComes) {
+  pipe_.Write(Jpeg(Gray(0)));
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  for (int idx = 0; idx < 3; ++idx) {
+    const auto image = (*source)->Read(idx);
+    ASSERT_TRUE(image.ok() && image->has_value()) << image.status().message();
+    EXPECT_NEAR(cv::mean(**image)[0], 40 + 20 * idx, 1);
+    pipe_.Write(Jpeg(Gray(idx + 1)));
+  }
+  EXPECT_EQ((*source)->counts().fps, kFps) << "by the calibration: photographs tell no rate";
+  pipe_.Close();
+}
+
+TEST_F(LiveSourceTest, AVideoThatIsCutOffLosesItsLastImage) {
+  const std::string last = "FRAME\n" + std::string(kWidth * kHeight, '\x80');
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 3);
+  pipe_.Write(last);
+  pipe_.Close();
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  EXPECT_EQ(ReadAll(**source).size(), 3U);
+  EXPECT_EQ((*source)->counts().received, 3);
+  EXPECT_EQ((*source)->counts().damaged, 1);
+}
+
+TEST_F(LiveSourceTest, SaysWhereAVideoIsDamagedOrChangesItsSize) {
+  const auto ending = [&](const std::string& next) {
+    PipedVideo pipe;
+    pipe.Header(kWidth, kHeight, kFps);
+    for (int idx = 0; idx < 3; ++idx) pipe.Image(Gray(idx));
+    pipe.Write(next);
+    pipe.Close();
+    auto source = LiveSource::Open(request_);
+    if (!source.ok()) return source.status();
+    for (int idx = 0; idx < 3; ++idx) EXPECT_TRUE((*source)->Read(idx)->has_value()) << idx;
+    return (*source)->Read(3).status();
+  };
+  const Status damaged = ending("FRAXE\n" + std::string(20000, 'x'));
+  EXPECT_EQ(damaged.code(), ErrorCode::kUnreadable);
+  EXPECT_THAT(damaged.message(), HasSubstr("is damaged after 3 images"));
+  const Status changed = ending("YUV4MPEG2 W32 H24 F30:1\nFRAME\n" + std::string(32 * 24 * 3 / 2, 'x'));
+  EXPECT_EQ(changed.code(), ErrorCode::kMismatch);
+  EXPECT_THAT(changed.message(), HasSubstr("change their size from 64x48 to 32x24 after 3 images"));
+}
+
+TEST_F(LiveSourceTest, SaysThatADecoderEndsBeforeItsPipe) {
+  SendFile(Video("clip.wmv", {'W', 'M', 'V', '2'}, {0, 1, 2, 3}), std::string(300000, '\x55'));
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  for (int idx = 0; idx < 4; ++idx) ASSERT_TRUE((*source)->Read(idx)->has_value()) << idx;
+  const auto ended = (*source)->Read(4);
+  EXPECT_EQ(ended.status().code(), ErrorCode::kUnreadable);
+  EXPECT_THAT(ended.status().message(), HasSubstr("cannot be decoded beyond its image 4, although more is sent"));
+}
+
+TEST_F(LiveSourceTest, ACopyOfTheLastImageIsNoImage) {
+  SendFile(Video("clip.avi", {'M', 'J', 'P', 'G'}, {0, 1, 1, 2, 2}), "");
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  EXPECT_EQ(ReadAll(**source), (std::vector<int>{0, 1, 1, 2})) << "one between others is";
+  EXPECT_EQ((*source)->counts().received, 4);
+  EXPECT_EQ((*source)->counts().damaged, 1);
+}
+
+TEST_F(LiveSourceTest, AnImageThatAConnectionCutsOffIsNoImage) {
+  std::string stream = "HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace;boundary=next\r\n\r\n";
+  for (int idx = 0; idx < 6; ++idx) {
+    const std::string image = Jpeg(Gray(idx));
+    stream += "--next\r\nContent-Type: image/jpeg\r\nContent-Length: " + std::to_string(image.size()) + "\r\n\r\n";
+    stream += idx < 5 ? image + "\r\n" : image.substr(0, image.size() - 40);
+  }
+  const ServedBytes server(stream);
+  request_.source = server.address();
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  EXPECT_EQ(ReadAll(**source), (std::vector<int>{0, 1, 2, 3, 4}));
+  EXPECT_EQ((*source)->counts().received, 5);
+  EXPECT_EQ((*source)->counts().damaged, 1);
+  EXPECT_EQ((*source)->counts().fps, kFps) << "by the calibration, where FFmpeg would invent one";
+}
+
+TEST_F(LiveSourceTest, SaysThatStandardInputEndsBeforeItsFirstImageIsWhole) {
+  const auto refusal = [&](const std::string& bytes) {
+    PipedVideo pipe;
+    pipe.Write(bytes);
+    pipe.Close();
+    const auto source = LiveSource::Open(request_);
+    EXPECT_EQ(source.status().code(), ErrorCode::kUnreadable);
+    return source.status().message();
+  };
+  const std::string image = Jpeg(Gray(0));
+  for (const std::string& begun : {image.substr(0, image.size() / 2), std::string("YUV4MPEG2 W6"),
+                                   "YUV4MPEG2 W64 H48 F30:1\nFRAME\n" + std::string(100, 'x')})
+    EXPECT_THAT(refusal(begun), HasSubstr("standard input ends within its first image"));
+  EXPECT_THAT(refusal("YUV4MPEG2 W64 H48 F30:1\n"), HasSubstr("standard input ends before its first image"));
+  EXPECT_THAT(refusal(""), HasSubstr("standard input is closed or empty"));
+  const PipedVideo pipe;
+  close(STDIN_FILENO);
+  EXPECT_THAT(LiveSource::Open(request_).status().message(), HasSubstr("standard input is closed or empty"));
 }
 
 TEST_F(LiveSourceTest, SaysThatPhotographsChangeTheirSize) {

@@ -67,7 +67,7 @@ TEST(Y4mFrames, OneThatIsCutOffIsNotPassedOn) {
 
 TEST(Y4mFrames, EveryPixelFormatHasItsSize) {
   const std::vector<std::pair<std::string, std::size_t>> formats = {
-      {"", 27},           {" C420", 27}, {" C420mpeg2", 27}, {" C420p10", 54}, {" C422", 35},  {" C422p12", 70},
+      {"", 27},           {" C420", 27}, {" C420mpeg2", 27}, {" C420p10", 54}, {" C422", 33},  {" C422p12", 66},
       {" C411", 15 + 12}, {" C444", 45}, {" C444alpha", 60}, {" C444p16", 90}, {" Cmono", 15}, {" Cmono16", 30}};
   for (const auto& [format, bytes] : formats) {
     Y4mFrames frames("-");
