@@ -206,9 +206,12 @@ TEST(Program, ResumeNeedsARunAndAFinishedOneHasNothingToDo) {
   const Outcome both = Pliant("track x --output_path y --resume --overwrite");
   EXPECT_EQ(both.exit, 2);
   EXPECT_THAT(both.err, HasSubstr("--resume goes on with a run and --overwrite begins a new one"));
-  const Outcome live = Pliant("track - --output_path y --resume");
-  EXPECT_EQ(live.exit, 1);
-  EXPECT_THAT(live.err, HasSubstr("such a run cannot be resumed"));
+  const std::string recorded = Temporary("live").string();
+  std::filesystem::create_directories(recorded + "_recording/images/000000.png");
+  const Outcome live = Pliant("track - --live --output_path '" + recorded + "' --resume");
+  EXPECT_EQ(live.exit, 2);
+  EXPECT_THAT(live.err, HasSubstr("such a run cannot be resumed; track its recording"));
+  EXPECT_THAT(live.err + live.out, Not(HasSubstr("live view"))) << "nothing is opened before";
   const std::string sequence = Temporary("seq_to_resume").string();
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 3 --Camera.width 320 --Camera.height 240 --output_path '" +
                    sequence + "'")
@@ -221,6 +224,15 @@ TEST(Program, ResumeNeedsARunAndAFinishedOneHasNothingToDo) {
   EXPECT_EQ(again.exit, 0);
   EXPECT_THAT(again.out, HasSubstr("3 of 3 frames tracked"));
   EXPECT_THAT(again.err, Not(HasSubstr("tracking (first map"))) << "no frame is read";
+}
+
+TEST(Program, StandardInputThatIsClosedOrEmptyIsSaid) {
+  for (const char* nothing : {" <&-", " </dev/null"}) {
+    const Outcome outcome = Pliant("track - -o '" + Temporary("run").string() + "'" + nothing);
+    EXPECT_EQ(outcome.exit, 1) << nothing;
+    EXPECT_THAT(outcome.err, HasSubstr("standard input is closed or empty")) << nothing;
+    EXPECT_FALSE(std::filesystem::exists(Temporary("run"))) << nothing;
+  }
 }
 
 TEST(Program, AnUnknownCameraIsAssumedAndTheRunSaysSo) {

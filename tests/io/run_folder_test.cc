@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -10,6 +12,7 @@
 
 #include "io/run_reports.h"
 #include "pliant/io/run_reader.h"
+#include "pliant/io/run_summary.h"
 #include "pliant/io/run_writer.h"
 #include "support/test_folder.h"
 #include "support/tolerances.h"
@@ -23,6 +26,30 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Pair;
 using testing::UnorderedElementsAre;
+
+TEST(StreamCounts, ComeBackAndThoseOfEarlierVersionsToo) {
+  const TestFolder folder;
+  RunSummary summary;
+  summary.stream = StreamCounts{.received = 9, .skipped = 2, .damaged = 1, .fps = 24.5, .measured = true};
+  ASSERT_TRUE(WriteRunSummary(folder.Path("run.json"), summary).ok());
+  const auto read = ReadRunSummary(folder.Path("run.json"));
+  ASSERT_TRUE(read.ok() && read->stream) << read.status().message();
+  EXPECT_EQ(read->stream->received, 9);
+  EXPECT_EQ(read->stream->skipped, 2);
+  EXPECT_EQ(read->stream->damaged, 1);
+  EXPECT_EQ(read->stream->fps, 24.5);
+  EXPECT_TRUE(read->stream->measured);
+
+  std::string text = folder.Read("run.json");
+  const std::size_t begin = text.find(',', text.find("\"damaged\": 1"));
+  const std::size_t end = text.find("true", begin);
+  ASSERT_NE(end, std::string::npos);
+  text.erase(begin, end + 4 - begin);
+  const auto earlier = ReadRunSummary(folder.Write("earlier.json", text));
+  ASSERT_TRUE(earlier.ok() && earlier->stream) << earlier.status().message();
+  EXPECT_EQ(earlier->stream->fps, 0);
+  EXPECT_FALSE(earlier->stream->measured);
+}
 
 TEST(RunFolder, ComesBackAsItWasReported) {
   const TestFolder folder;

@@ -72,6 +72,8 @@ TEST_F(LiveRun, OfEveryImageEqualsTheRunOfItsRecording) {
   ASSERT_TRUE(written.ok() && written->stream);
   EXPECT_EQ(written->stream->received, std::ssize(Rendered().frames));
   EXPECT_EQ(written->stream->skipped, 0);
+  EXPECT_EQ(written->stream->fps, kFps);
+  EXPECT_FALSE(written->stream->measured);
 
   const auto again = RunTrack(RequestOf(recording, "again"), options_, {});
   ASSERT_TRUE(again.ok()) << again.status().message();
@@ -80,6 +82,30 @@ TEST_F(LiveRun, OfEveryImageEqualsTheRunOfItsRecording) {
   EXPECT_EQ(live->frames_read, std::ssize(Rendered().frames));
   for (const char* file : {"frames.csv", "observations.csv", "trajectory.txt"})
     EXPECT_EQ(folder_.Read(std::string("live/") + file), folder_.Read(std::string("again/") + file)) << file;
+}
+
+TEST_F(LiveRun, KeepsWhatWasTrackedBeforeTheSizeChanges) {
+  PipedVideo pipe;
+  std::thread sender([&] {
+    Send(pipe);
+    pipe.Header(32, 24, kFps);
+    pipe.Image(cv::Mat(24, 32, CV_8UC1, cv::Scalar(100)));
+    pipe.Close();
+  });
+  RunRequest request = RequestOf("-", "live");
+  request.input.camera_path = folder_.Path("camera.yaml");
+  const auto summary = RunTrack(request, options_, {});
+  pipe.GiveUp();
+  sender.join();
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->status, RunStatus::kFailed);
+  EXPECT_EQ(summary->error, ErrorCode::kMismatch);
+  EXPECT_THAT(summary->note, testing::HasSubstr("change their size from"));
+  EXPECT_EQ(summary->frames_read, std::ssize(Rendered().frames));
+  EXPECT_GT(summary->frames_tracked, 0);
+  const auto written = ReadRunSummary(folder_.Path("live/run.json"));
+  ASSERT_TRUE(written.ok()) << written.status().message();
+  EXPECT_EQ(written->frames_tracked, summary->frames_tracked);
 }
 
 // When it is shown an image.
