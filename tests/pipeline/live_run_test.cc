@@ -85,6 +85,7 @@ TEST_F(LiveRun, OfEveryImageEqualsTheRunOfItsRecording) {
 }
 
 TEST_F(LiveRun, KeepsWhatWasTrackedBeforeTheSizeChanges) {
+  options_.tracker.init.method = InitMethod::kGated;  // has a map before its images end
   PipedVideo pipe;
   std::thread sender([&] {
     Send(pipe);
