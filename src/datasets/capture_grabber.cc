@@ -84,7 +84,7 @@ Result<std::unique_ptr<FrameGrabber>> CaptureGrabber::OpenPiped(std::unique_ptr<
   if (!pipe.ok()) return pipe.status();
   grabber->pipe_ = *std::move(pipe);
   if (Status status = grabber->OpenCapture(); !status.ok()) {
-    const Status of_input = grabber->AtEnd(false);
+    const Status of_input = grabber->EndOfPipe();
     return of_input.ok() ? status : of_input;
   }
   return std::unique_ptr<FrameGrabber>(std::move(grabber));
@@ -165,15 +165,18 @@ std::optional<cv::Mat> CaptureGrabber::Wait() {
     if (is_device_) std::this_thread::sleep_for(kPauseOfDevice);
   } while (!is_stopped_() && SecondsSince(begin) < kMostOfTheTimeout * timeout_s_ &&
            (is_device_ || ++damaged <= kMaxDamaged));
-  if (!is_stopped_()) Fail(AtEnd(SecondsSince(begin) > kMostOfTheTimeout * timeout_s_));
+  if (!is_stopped_()) Fail(pipe_ ? EndOfPipe() : EndOfStream(SecondsSince(begin)));
   if (pipe_ && pipe_->EndsWithinFrame()) CountDamaged(1);
   return std::nullopt;
 }
 
-// What the source gives no further image for. `has_waited`: for one, about as long as the time-out.
-Status CaptureGrabber::AtEnd(bool has_waited) {
-  if (!pipe_)  // a camera has no end
-    return has_waited || since_long_wait_ <= kMaxHeldBack ? SentNothing(source(), timeout_s_) : Status::Ok();
+// A camera has no end.
+Status CaptureGrabber::EndOfStream(double waited_s) const {
+  const bool has_stalled = waited_s > kMostOfTheTimeout * timeout_s_ || since_long_wait_ <= kMaxHeldBack;
+  return has_stalled ? SentNothing(source(), timeout_s_) : Status::Ok();
+}
+
+Status CaptureGrabber::EndOfPipe() const {
   if (gave_up_ && images() > 0)
     return {ErrorCode::kUnreadable, "the video on standard input cannot be decoded beyond its image " +
                                         std::to_string(images()) +

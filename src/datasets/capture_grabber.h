@@ -40,7 +40,9 @@ class CaptureGrabber final : public FrameGrabber {
   std::optional<cv::Mat> Next() override;
   std::optional<cv::Mat> Wait();
   std::optional<cv::Mat> Decode();
-  Status AtEnd(bool has_waited);
+  // Why nothing more comes; Ok at the end.
+  Status EndOfStream(double waited_s) const;
+  Status EndOfPipe() const;
 
   std::unique_ptr<StandardInput> input_;  // null: another source; it outlives the pipe
   std::unique_ptr<DecoderPipe> pipe_;     // which outlives the capture that reads it
