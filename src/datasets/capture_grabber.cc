@@ -124,8 +124,8 @@ Status CaptureGrabber::OpenCapture() {
 // A stream of bare JPEG images, as those of network cameras, is decoded here: FFmpeg fills the rest of one that is cut
 // off from the image before, and gives each one when later ones have come.
 void CaptureGrabber::FollowJpegs() {
-  const int kBare = cv::VideoWriter::fourcc('m', 'j', 'p', 'e');  // FFmpeg's name; containers have other codes
-  if (static_cast<int>(capture_.get(cv::CAP_PROP_FOURCC)) != kBare) return;
+  const int bare_jpeg = cv::VideoWriter::fourcc('m', 'j', 'p', 'e');  // FFmpeg's name; containers have other codes
+  if (static_cast<int>(capture_.get(cv::CAP_PROP_FOURCC)) != bare_jpeg) return;
   gives_jpegs_ = capture_.set(cv::CAP_PROP_FORMAT, -1);
   if (fps_ == kFpsOfNobody) fps_.reset();
 }

@@ -218,7 +218,8 @@ Result<std::optional<cv::Mat>> LiveSource::State::Take(std::unique_lock<std::mut
 StreamCounts LiveSource::State::CountsWithRate() const {
   StreamCounts result = counts;
   result.fps = calibration->calibration.Fps();
-  result.measured = request.options.frames == LiveFrames::kNewest && counts.received > 1;
+  result.measured =
+      request.options.frames == LiveFrames::kNewest && counts.received > 1 && *last_arrival > *first_arrival;
   if (result.measured)
     result.fps = static_cast<double>(counts.received - 1) / SecondsBetween(*first_arrival, *last_arrival);
   return result;

@@ -25,13 +25,14 @@ using tracking_test::TrackerFromImages;
 constexpr int kLastFrame = 8;
 constexpr int kHalf = kLastFrame / 2;
 constexpr double kDepthSigma = 0.02;
-constexpr double kStrongSignal = 2.5;
 
 // What a reference answers in the frame so long after it.
 struct Turn {
   int reference_frame_idx = 0;
   std::size_t frames = 0;  // since the reference, which counts
   InitDecision decision = InitDecision::kWait;
+  double signal = 2.5;  // of a map
+  bool at_end = false;  // of the sequence alone; then its map is provisional
 };
 
 // Maps of a few frames are uncertain here, which does not matter.
@@ -53,7 +54,8 @@ class Turns final : public Initializer {
   InitOutcome Try(const InitInput& input) const override {
     asked_.push_back({input.frames.front().frame_idx, input.frames.size()});
     const auto turn = std::ranges::find_if(turns_, [&](const Turn& t) {
-      return t.reference_frame_idx == input.frames.front().frame_idx && t.frames == input.frames.size();
+      return t.reference_frame_idx == input.frames.front().frame_idx && t.frames == input.frames.size() &&
+             (!t.at_end || input.moment == InitMoment::kLastFrame);
     });
     InitOutcome outcome;
     if (turn == turns_.end()) return outcome;
@@ -63,9 +65,9 @@ class Turns final : public Initializer {
         ADD_FAILURE() << outcome.reason;
         return outcome;
       }
-      outcome.provisional = outcome.deforming = turn->decision == InitDecision::kProvisional;
+      outcome.provisional = outcome.deforming = turn->at_end || turn->decision == InitDecision::kProvisional;
       outcome.measured.median_depth_sigma = kDepthSigma;
-      outcome.measured.depth_spread = kStrongSignal * kDepthSigma;
+      outcome.measured.depth_spread = turn->signal * kDepthSigma;
     }
     outcome.decision = turn->decision;
     return outcome;
@@ -158,6 +160,16 @@ TEST_F(OverlappingReferences, AtTheEndBothMakeALastAttempt) {
   Show({{kHalf, kFrames - kHalf, InitDecision::kWait}});
   EXPECT_TRUE(initializer_->WasAsked(0, kFrames));
   EXPECT_TRUE(initializer_->WasAsked(kHalf, kFrames - kHalf));
+}
+
+TEST_F(OverlappingReferences, TheEndMakesNoMapThatHardlyStandsOutOnceALongerReferenceWasGivenUp) {
+  const Turn given_up{0, kFrames - 2, InitDecision::kNewReference};
+  for (const double signal : {1.5, 2.5}) {
+    reports_.clear();
+    back_.reset();
+    Show({given_up, {kHalf, kFrames - kHalf, InitDecision::kMap, signal, true}});
+    EXPECT_EQ(MapFrames().has_value(), signal > 2) << signal;
+  }
 }
 
 TEST_F(OverlappingReferences, ThereIsNoneWhereFramesDoNotComeAgain) {

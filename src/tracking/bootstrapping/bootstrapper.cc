@@ -436,6 +436,10 @@ void Bootstrapper::AttemptLast(Reference* reference, BootstrapStep* step) {
   if (answer.outcome.decision == InitDecision::kNewReference && step->ambiguity.empty())
     TellAmbiguity(answer.outcome, *reference, step);
   if (answer.outcome.decision != InitDecision::kMap) return;
+  // Where a longer one gave no map, depths that hardly stand out do so by chance.
+  const InitMeasurements& measured = answer.outcome.measured;
+  const bool hardly_stand_out = measured.median_depth_sigma > 0 && measured.DepthSignal() < kMinProvisionalSignal;
+  if (says_less && answer.outcome.provisional && hardly_stand_out) return;
   MakePresent(reference);
   FinishMapOrGoBack(std::move(answer), step);
 }
