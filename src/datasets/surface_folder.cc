@@ -67,7 +67,7 @@ SurfaceFileNames::SurfaceFileNames(const std::map<int, std::string>& images) : i
 }
 
 std::string SurfaceFileNames::Of(int frame_idx) const {
-  const std::string number = native::FrameFileName(frame_idx);
+  std::string number = native::FrameFileName(frame_idx);
   const auto image = images_.find(frame_idx);
   if (image == images_.end()) return number;
   std::string stem = StemOf(image->second);
