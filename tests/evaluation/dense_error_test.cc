@@ -135,9 +135,9 @@ TEST_F(DenseErrorTest, TheMeshIsComparedWhereTheFrameHasADepthAndElsewhere) {
   EXPECT_NEAR(error->mesh->depth.abs_rel, 0.02, 1e-3);
   EXPECT_NEAR(error->mesh_alone->depth.abs_rel, 0.1, 1e-3);
   ASSERT_TRUE(error->mesh->within_sigma && error->mesh_alone->within_sigma);
-  EXPECT_EQ((*error->mesh->within_sigma)[0], 1.0);
+  EXPECT_NEAR((*error->mesh->within_sigma)[0], 1.0, 1e-9);
   EXPECT_EQ((*error->mesh_alone->within_sigma)[0], 0.0);
-  EXPECT_EQ((*error->mesh_alone->within_sigma)[1], 1.0);
+  EXPECT_NEAR((*error->mesh_alone->within_sigma)[1], 1.0, 1e-9);
   EXPECT_NEAR(error->mesh_alone_share.value(), 0.25, 0.02);
   EXPECT_NEAR(error->mesh_vertices, Rendered().camera.width() / 8.0, 1);
 }
